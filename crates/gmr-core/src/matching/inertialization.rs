@@ -1,0 +1,1 @@
+//! inertialization (to be written).

@@ -1,0 +1,10 @@
+//! Motion matching: simulation root, features, exact nearest-neighbour index, controller and trials.
+
+pub mod controller;
+pub mod database;
+pub mod features;
+pub mod index;
+pub mod inertialization;
+pub mod path;
+pub mod root;
+pub mod trial;

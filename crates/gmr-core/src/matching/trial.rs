@@ -1,0 +1,1 @@
+//! trial (to be written).

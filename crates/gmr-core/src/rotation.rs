@@ -1,0 +1,1 @@
+//! Rotations: quaternions `(x, y, z, w)` and the twelve Euler orders.

@@ -1,0 +1,24 @@
+//! The extension module `gmr._core`: each topic of gmr-core in a file of its own, nothing but conversions, checks,
+//! the GIL and errors.
+
+use pyo3::prelude::*;
+
+mod index;
+mod isa;
+mod kinematics;
+mod matching;
+mod numbers;
+mod rotation;
+mod trial;
+
+#[pymodule(gil_used = false)]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    isa::register(module)?;
+    numbers::register(module)?;
+    rotation::register(module)?;
+    kinematics::register(module)?;
+    index::register(module)?;
+    matching::register(module)?;
+    trial::register(module)
+}

@@ -1,0 +1,5 @@
+"""cli."""
+
+
+def main() -> None:
+    """Entry point (to be written)."""
