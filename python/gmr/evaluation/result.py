@@ -1,0 +1,248 @@
+"""What an evaluation found: tables, a verdict in words, and the worst trial to look at.
+
+Metres, seconds and degrees throughout; a column's name never changes once released.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.evaluation.table import FORMATS, Table
+from gmr.replacing import replacing
+
+if TYPE_CHECKING:
+    import pyarrow
+
+    AnyTable: TypeAlias = "pyarrow.Table | Table"
+
+__all__ = ["Evaluation", "Replay", "Summary", "Tables", "Verdict"]
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """What was evaluated, and how.
+
+    Attributes:
+        dataset: name of the dataset, that is of its folder.
+        clip_count: clips evaluated, mirrored copies not counted.
+        mirrored_count: mirrored copies added to them.
+        frame_count: frames of all of these at ``rate``, mirrored copies counted.
+        seconds: their duration, mirrored copies counted.
+        rate: frames per second of the evaluation.
+        joint_count: joints of the skeleton.
+        joints: role ("hips", "left_foot", ...) -> name of the joint that was taken for it.
+        unit: the unit of length of the files in words, and where it comes from.
+        settings: every setting of the run by its name, as plain values.
+    """
+
+    dataset: str
+    clip_count: int
+    mirrored_count: int
+    frame_count: int
+    seconds: float
+    rate: float
+    joint_count: int
+    joints: Mapping[str, str]
+    unit: str
+    settings: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """The evaluation in words.
+
+    Attributes:
+        headline: the one sentence to remember.
+        sentences: what stands behind it, in reading order; each carries its figures.
+    """
+
+    headline: str
+    sentences: tuple[str, ...]
+
+    def __str__(self) -> str:
+        """The whole verdict as one paragraph."""
+        return " ".join((self.headline, *self.sentences))
+
+
+@dataclass(frozen=True, slots=True)
+class Replay:
+    """One trial as it was played, T steps at ``rate``, to be drawn.
+
+    Attributes:
+        positions: (T, J, 3) float32, world positions of the joints in metres, Y up, jumps smoothed.
+        parents: (J,) int32, index of each joint's parent, -1 for a root.
+        joint_names: the J names.
+        path: (T, 2), where the character was on the ground, (x, z) in metres.
+        reference: (T, 2), where it should have been at the same time.
+        offset: (T,), the distance between the two in metres.
+        clip: (T,) int32, the clip played, an index into ``clip_names``.
+        frame: (T,) int32, the frame of that clip at ``rate``.
+        jumped: (T,) bool, whether this step was entered by a jump.
+        clip_names: names of the clips.
+        rate: steps per second.
+        speed: the speed asked for, m/s.
+        turn_rate_deg: the turn rate asked for, degrees/s, positive to the left.
+        tracking: "time" or "velocity".
+    """
+
+    positions: NDArray[np.float32]
+    parents: NDArray[np.int32]
+    joint_names: tuple[str, ...]
+    path: NDArray[np.float64]
+    reference: NDArray[np.float64]
+    offset: NDArray[np.float64]
+    clip: NDArray[np.int32]
+    frame: NDArray[np.int32]
+    jumped: NDArray[np.bool_]
+    clip_names: tuple[str, ...]
+    rate: float
+    speed: float
+    turn_rate_deg: float
+    tracking: str
+
+
+@dataclass(frozen=True, slots=True)
+class Tables:
+    """The tables of an evaluation. The columns of each, in order; those after the bar may be added to.
+
+    Attributes:
+        trials: one row a trial: dataset scenario tracking speed turn_rate_deg
+            speed_error turn_rate_error_deg speed_deviation turn_rate_deviation_deg
+            offset_mean offset_rms offset_p95 offset_max offset_final
+            transitions_per_second search_cost_mean pose_discontinuity_mean
+            | speed_mean turn_rate_mean_deg speed_deviation_1s turn_rate_deviation_1s_deg
+            offset_sum along_track_mean along_track_rms cross_track_mean cross_track_rms
+            inter_clip_per_second intra_clip_per_second forced_end_per_second
+            search_cost_pose_mean search_cost_trajectory_mean clip_count seconds
+        coverage: one row a one-second window of the clips: dataset clip frame speed turn_rate_deg | seconds.
+            ``frame`` is the middle of the window, ``seconds`` its time in the file.
+        usage: one row a frame of the dataset, also of those never played (count 0):
+            dataset scenario clip frame count | seconds
+        transitions: one row a pair of frames jumped between:
+            dataset scenario from_clip from_frame to_clip to_frame kind count
+            | from_seconds to_seconds discontinuity_mean.
+            ``kind`` is "inter-clip", "intra-clip" or "forced end".
+        clips: one row a clip: dataset clip seconds frames mirrored speed_mean turn_rate_mean_deg
+            played_seconds played_share used_share.
+            ``played_share`` is of the time of all trials, ``used_share`` of the clip's own frames.
+
+    A mirrored copy of a clip is named "<clip> (mirrored)".
+    """
+
+    trials: Table
+    coverage: Table
+    usage: Table
+    transitions: Table
+    clips: Table
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluation:
+    """What :func:`gmr.evaluate` found.
+
+    Attributes:
+        dataset: name of the dataset.
+        measured: the tables, as gmr's own :class:`Table` of NumPy columns.
+        summary: what was evaluated, and how.
+        verdict: the result in words.
+        replay: the trial that strayed farthest from its path.
+        notes: what was noticed or assumed on the way, one sentence each.
+        failed: file that could not be used -> why, in one sentence.
+    """
+
+    dataset: str
+    measured: Tables
+    summary: Summary
+    verdict: Verdict
+    replay: Replay
+    notes: tuple[str, ...] = ()
+    failed: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def trials(self) -> AnyTable:
+        """One row a trial, as ``pyarrow.Table`` where pyarrow is installed, else :class:`Table`."""
+        return _arrow_where_installed(self.measured.trials)
+
+    @property
+    def coverage(self) -> AnyTable:
+        """One row a 1-s window, as ``pyarrow.Table`` where pyarrow is installed, else :class:`Table`."""
+        return _arrow_where_installed(self.measured.coverage)
+
+    @property
+    def usage(self) -> AnyTable:
+        """One row a frame, as ``pyarrow.Table`` where pyarrow is installed, else :class:`Table`."""
+        return _arrow_where_installed(self.measured.usage)
+
+    @property
+    def transitions(self) -> AnyTable:
+        """One row a jump, as ``pyarrow.Table`` where pyarrow is installed, else :class:`Table`."""
+        return _arrow_where_installed(self.measured.transitions)
+
+    @property
+    def clips(self) -> AnyTable:
+        """One row a clip, as ``pyarrow.Table`` where pyarrow is installed, else :class:`Table`."""
+        return _arrow_where_installed(self.measured.clips)
+
+    def tables(self) -> dict[str, Table]:
+        """The tables by name, as gmr's own :class:`Table` whether pyarrow is installed or not."""
+        return {name: getattr(self.measured, name) for name in Tables.__dataclass_fields__}
+
+    def write_tables(
+        self, folder: str | os.PathLike[str], formats: Sequence[str] = ("csv",)
+    ) -> tuple[Path, ...]:
+        """Write every table into a folder, in every format: all of the files, or none of them.
+
+        Args:
+            folder: where to; made where it is missing.
+            formats: of "csv", "json" and "parquet".
+
+        Returns:
+            The files written.
+
+        Raises:
+            ValueError: an unknown format.
+            MissingExtraError: Parquet is asked for and pyarrow is not installed.
+            OSError: the folder may not be written to, or the disk is full.
+        """
+        if unknown := sorted(set(formats) - set(FORMATS)):
+            raise ValueError(f"unknown table format {unknown[0]!r}; known are {', '.join(FORMATS)}")
+        made_here = not Path(folder).exists()
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        files = [
+            (Path(folder) / f"{name}.{suffix}", table, FORMATS[suffix])
+            for suffix in formats
+            for name, table in self.tables().items()
+        ]
+        try:
+            with replacing(*(path for path, _, _ in files)) as opened:
+                for file, (_, table, write) in zip(opened, files, strict=True):
+                    write(table, file)
+        except BaseException:
+            if made_here:
+                with contextlib.suppress(OSError):
+                    Path(folder).rmdir()
+            raise
+        return tuple(path for path, _, _ in files)
+
+    def report(self, path: str | os.PathLike[str]) -> None:
+        """Write the report: one self-contained HTML file that opens offline.
+
+        Raises:
+            OSError: the file cannot be written.
+        """
+        from gmr.evaluation.report import write_report
+
+        write_report(self, path)
+
+
+def _arrow_where_installed(table: Table) -> AnyTable:
+    return table.to_arrow() if importlib.util.find_spec("pyarrow") else table
