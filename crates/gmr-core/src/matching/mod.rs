@@ -3,6 +3,7 @@
 pub mod controller;
 pub mod database;
 pub mod features;
+pub mod ground;
 pub mod index;
 pub mod inertialization;
 pub mod path;
