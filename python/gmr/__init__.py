@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from gmr._core import __version__
 from gmr.errors import (
     DatasetError,
@@ -12,12 +15,42 @@ from gmr.errors import (
     SkeletonError,
 )
 
+if TYPE_CHECKING:
+    from gmr.channels import ChannelLayout
+    from gmr.motion import Motion
+    from gmr.skeleton import Skeleton
+
 __all__ = [
+    "ChannelLayout",
     "DatasetError",
     "FormatError",
     "FormatWarning",
     "GmrError",
     "MissingExtraError",
+    "Motion",
+    "Skeleton",
     "SkeletonError",
     "__version__",
 ]
+
+# What needs NumPy is imported when first used, so that `gmr --help` answers at once.
+_HOMES = {
+    "ChannelLayout": "gmr.channels",
+    "Motion": "gmr.motion",
+    "Skeleton": "gmr.skeleton",
+}
+_MODULES: frozenset[str] = frozenset()
+
+
+def __getattr__(name: str) -> Any:
+    if name in _MODULES:
+        return import_module(f"gmr.{name}")
+    if name not in _HOMES:
+        raise AttributeError(f"module 'gmr' has no attribute '{name}'")
+    found = getattr(import_module(_HOMES[name]), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

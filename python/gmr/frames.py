@@ -1,0 +1,100 @@
+"""The frames of a motion: rows of channels as a file writes them, or rotations and translations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.arrays import frozen, read_only
+from gmr.channels import ChannelLayout
+from gmr.errors import GmrError
+
+__all__ = ["Pose", "Rows"]
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Frames as a post-rotation file writes them.
+
+    Args:
+        values: (F, C) float64, degrees and file units.
+        layout: what each column moves.
+    """
+
+    values: NDArray[np.float64]
+    layout: ChannelLayout
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", _frames_of(self.values, "rows", (self.layout.column_count,)))
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def frames(self, part: slice) -> Rows:
+        """Some of the frames; consecutive ones share memory."""
+        return Rows(read_only(np.ascontiguousarray(self.values[part])), self.layout)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _owned, (Rows, self.values, self.layout)
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """Frames as rotations of slots and translations of joints.
+
+    Args:
+        rotations: (F, S, 4) float64 unit quaternions xyzw, each slot's rotation in the frame of the slot
+            above it.
+        translated: (T,) int32, the joints with a translation per frame; all roots are among them.
+        translations: (F, T, 3) float64 file units: a root's place in the world, another joint's vector from
+            its parent in the frame of its own bone.
+        layout: the channels that a post-rotation file would write it with; None: the standard ones.
+    """
+
+    rotations: NDArray[np.float64]
+    translated: NDArray[np.int32]
+    translations: NDArray[np.float64]
+    layout: ChannelLayout | None = None
+
+    def __post_init__(self) -> None:
+        translated = frozen(self.translated, np.int32)
+        object.__setattr__(self, "translated", translated)
+        object.__setattr__(self, "rotations", _frames_of(self.rotations, "rotations", (None, 4)))
+        object.__setattr__(
+            self, "translations", _frames_of(self.translations, "translations", (len(translated), 3))
+        )
+        if len(self.rotations) != len(self.translations):
+            raise GmrError(
+                f"{len(self.rotations)} frames of rotations but {len(self.translations)} of translations; "
+                "give as many of each"
+            )
+
+    def __len__(self) -> int:
+        return len(self.translations)
+
+    def frames(self, part: slice) -> Pose:
+        """Some of the frames; consecutive ones share memory."""
+        rotations, translations = (np.ascontiguousarray(a[part]) for a in (self.rotations, self.translations))
+        return replace(self, rotations=read_only(rotations), translations=read_only(translations))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _owned, (Pose, self.rotations, self.translated, self.translations, self.layout)
+
+
+def _frames_of(array: NDArray[Any], what: str, shape: tuple[int | None, ...]) -> NDArray[np.float64]:
+    """``array`` read-only as (F, *shape) float64, or an error that names ``what``."""
+    found = frozen(array, np.float64)
+    if found.ndim != 1 + len(shape) or any(
+        n is not None and n != m for n, m in zip(shape, found.shape[1:], strict=True)
+    ):
+        wanted = ", ".join("any" if n is None else str(n) for n in shape)
+        raise GmrError(f"{what} has the shape {found.shape}; it must be (frames, {wanted})")
+    return found
+
+
+def _owned(kind: type[Rows] | type[Pose], *fields: Any) -> Rows | Pose:
+    """Frames from unpickled arrays, which nobody else holds and so need no copy."""
+    return kind(*(read_only(field) if isinstance(field, np.ndarray) else field for field in fields))

@@ -1,0 +1,330 @@
+"""A motion: a clip on a skeleton, immutable.
+
+What was read is kept as read (rows of channels in degrees); the pose that operations work on (a quaternion
+for each rotation slot, translations of the roots and of the joints that move) is made once, when needed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from gmr.channels import ChannelLayout
+from gmr.errors import GmrError, SkeletonError
+from gmr.frames import Pose, Rows
+from gmr.skeleton import Skeleton
+
+if TYPE_CHECKING:
+    from gmr.dummies import Dropped
+
+__all__ = ["Motion"]
+
+Joint = str | int | np.integer[Any]
+FloatArray = NDArray[np.float32] | NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Motion:
+    """One continuous recording on a skeleton; immutable. Operations return a new one and share what they
+    keep.
+
+    Make one with :func:`gmr.read`, :meth:`from_rows` or :meth:`from_pose`. Two motions are equal when
+    skeleton, timing, unit and the stored numbers are; the name does not count.
+    """
+
+    skeleton: Skeleton
+    frame_time: float
+    """Seconds from a frame to the next."""
+    source: Rows | Pose
+    """The frames as they were given."""
+    unit: float | None = None
+    """Metres per file unit, None if unknown."""
+    name: str | None = None
+    """Name of the file it was read from."""
+    dropped: Dropped | None = field(default=None)
+    """What :meth:`drop_dummies` removed, so that a file can be given it back."""
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.frame_time) and self.frame_time >= 0):
+            raise GmrError(f"a frame cannot last {self.frame_time} seconds; give 0 or more")
+        if self.unit is not None and not (math.isfinite(self.unit) and self.unit > 0):
+            raise GmrError(f"a file unit cannot be {self.unit} metres; give more than 0, or None if unknown")
+        _check_fit(self.skeleton, self.source)
+
+    @classmethod
+    def from_rows(
+        cls,
+        skeleton: Skeleton,
+        layout: ChannelLayout,
+        rows: ArrayLike,
+        frame_time: float,
+        *,
+        unit: float | None = None,
+        name: str | None = None,
+    ) -> Motion:
+        """Motion from the rows of a post-rotation file.
+
+        Args:
+            skeleton: J joints, its slots numbered as :func:`gmr.skeleton.owned_slots` does.
+            layout: C channels.
+            rows: (F, C) degrees and file units; a float64 array that is read-only is shared, any other
+                copied.
+            frame_time: seconds.
+            unit: metres per file unit.
+            name: the file's name.
+        """
+        return cls(skeleton, float(frame_time), Rows(np.asarray(rows), layout), unit, name)
+
+    @classmethod
+    def from_pose(
+        cls,
+        skeleton: Skeleton,
+        rotations: ArrayLike,
+        translations: ArrayLike,
+        frame_time: float,
+        *,
+        translated: Sequence[int] | NDArray[np.int32] | None = None,
+        layout: ChannelLayout | None = None,
+        unit: float | None = None,
+        name: str | None = None,
+    ) -> Motion:
+        """Motion from quaternions.
+
+        Args:
+            skeleton: J joints, S slots.
+            rotations: (F, S, 4) unit quaternions xyzw, local to the slot above.
+            translations: (F, T, 3) file units; roots: world, others: the bone's vector in its slot's frame.
+            frame_time: seconds.
+            translated: (T,) the joints that ``translations`` is of; the roots by default.
+            layout: channels to write it with in a post-rotation file.
+            unit: metres per file unit.
+            name: the file's name.
+        """
+        moving = np.array(skeleton.roots if translated is None else translated, np.int32)
+        pose = Pose(np.asarray(rotations), moving, np.asarray(translations), layout)
+        return cls(skeleton, float(frame_time), pose, unit, name)
+
+    @property
+    def frame_count(self) -> int:
+        """F."""
+        return len(self.source)
+
+    def __len__(self) -> int:
+        return self.frame_count
+
+    @property
+    def fps(self) -> float:
+        """Frames a second; infinite where the frame time is 0."""
+        return 1 / self.frame_time if self.frame_time else math.inf
+
+    @property
+    def duration(self) -> float:
+        """Seconds, each frame lasting one frame time."""
+        return self.frame_count * self.frame_time
+
+    @property
+    def roots(self) -> tuple[str, ...]:
+        """Names of the joints that carry a translation of their own in the world."""
+        return tuple(self.skeleton.names[root] for root in self.skeleton.roots)
+
+    @cached_property
+    def dummies(self) -> tuple[str, ...]:
+        """Names of the joints with zero offset in every frame, which only let siblings move independently."""
+        from gmr.dummies import find_dummies
+
+        return tuple(self.skeleton.names[joint] for joint in find_dummies(self))
+
+    @property
+    def layout(self) -> ChannelLayout | None:
+        """Channels of the file it was read from, or that it is to be written with; None: not decided."""
+        return self.source.layout
+
+    @cached_property
+    def pose(self) -> Pose:
+        """The frames as rotations and translations; converted once where they were read as rows."""
+        from gmr.euler import pose_from_rows
+
+        if isinstance(self.source, Pose):
+            return self.source
+        return pose_from_rows(self.skeleton, self.source)
+
+    @property
+    def rotations(self) -> NDArray[np.float64]:
+        """(F, S, 4) float64 xyzw: each slot's rotation in the frame of the slot above; read-only."""
+        return self.pose.rotations
+
+    @property
+    def translated(self) -> NDArray[np.int32]:
+        """(T,) int32: the joints that :attr:`translations` is of; read-only."""
+        return self.source.layout.translated if isinstance(self.source, Rows) else self.source.translated
+
+    @property
+    def translations(self) -> NDArray[np.float64]:
+        """(F, T, 3) float64 file units: roots in the world, others in their slot's frame; read-only."""
+        return self.pose.translations
+
+    @cached_property
+    def rows(self) -> NDArray[np.float64]:
+        """(F, C) float64, degrees and file units: as read, or as :attr:`layout` (else the standard) would
+        write it.
+
+        Raises:
+            SkeletonError: siblings turn independently, or a joint moves that has no position channels.
+        """
+        from gmr.euler import rows_from_pose
+
+        if isinstance(self.source, Rows):
+            return self.source.values
+        return rows_from_pose(self.skeleton, self.source).values
+
+    def positions(
+        self,
+        *,
+        dtype: DTypeLike | None = None,
+        joints: Iterable[Joint] | None = None,
+        out: FloatArray | None = None,
+        threads: int | None = None,
+    ) -> FloatArray:
+        """World positions.
+
+        Args:
+            dtype: float32 (default) or float64.
+            joints: K names or indices; all joints by default.
+            out: (F, K, 3) C-contiguous array to write into; its type decides where ``dtype`` is not given.
+            threads: 0: all cores; None: all cores for long motions. The bits do not depend on it.
+
+        Returns:
+            (F, K, 3) file units; ``out`` where given.
+        """
+        from gmr.world import motion_positions
+
+        return motion_positions(self, dtype, joints, out, threads)
+
+    def bone_rotations(self, *, dtype: DTypeLike | None = None, threads: int | None = None) -> FloatArray:
+        """(F, J, 4) xyzw: world rotation of the bone that ends in each joint; identity for a root."""
+        from gmr.world import motion_rotations
+
+        return motion_rotations(self, self.skeleton.topology.world_slots, dtype, threads)
+
+    def joint_rotations(self, *, dtype: DTypeLike | None = None, threads: int | None = None) -> FloatArray:
+        """(F, J, 4) xyzw: world frame of each joint as BVH means it (post-rotation).
+
+        Raises:
+            SkeletonError: two children of a joint turn independently, so that it has no one frame.
+        """
+        from gmr.world import motion_rotations
+
+        return motion_rotations(self, self.skeleton.frame_slots, dtype, threads)
+
+    def __getitem__(self, part: slice) -> Motion:
+        """Frames ``motion[10:50]``, sharing memory; ``motion[::2]`` has every second one, twice as long."""
+        if not isinstance(part, slice):
+            raise TypeError(f"a motion is cut by a slice: motion[{part}:{part} + 1] is the frame {part!r}")
+        _, _, step = part.indices(self.frame_count)
+        cut = replace(self, source=self.source.frames(part), frame_time=self.frame_time * abs(step))
+        if isinstance(self.source, Rows) and "pose" in self.__dict__:
+            cut.__dict__["pose"] = self.pose.frames(part)
+        return cut
+
+    def resample(self, fps: float) -> Motion:
+        """The motion at another rate; see :func:`gmr.resample.resample`."""
+        from gmr.resample import resample
+
+        return resample(self, fps)
+
+    def mirror(self, pairs: Mapping[str, str] | Iterable[tuple[str, str]] | None = None) -> Motion:
+        """The mirror image across the plane x = 0, left for right; see :func:`gmr.mirror.mirror`."""
+        from gmr.mirror import mirror
+
+        return mirror(self, pairs)
+
+    def to_unit(self, unit: float | str) -> Motion:
+        """The same motion in another unit: "m", "cm" or metres; see :func:`gmr.units.to_unit`."""
+        from gmr.units import to_unit
+
+        return to_unit(self, unit)
+
+    def with_unit(self, unit: float | str | None) -> Motion:
+        """The same numbers, declared to be in this unit ("m", "cm", ... or metres per unit)."""
+        from gmr.units import metres_per_unit
+
+        return replace(self, unit=None if unit is None else metres_per_unit(unit))
+
+    def with_name(self, name: str | None) -> Motion:
+        """The same motion under another name."""
+        return replace(self, name=name)
+
+    def drop_dummies(self) -> Motion:
+        """The motion without its dummy joints, all others in place; see :func:`gmr.dummies.drop_dummies`."""
+        from gmr.dummies import drop_dummies
+
+        return drop_dummies(self)
+
+    def restore_dummies(self) -> Motion:
+        """The motion with the dropped dummies back; see :func:`gmr.dummies.restore_dummies`."""
+        from gmr.dummies import restore_dummies
+
+        return restore_dummies(self)
+
+    def __repr__(self) -> str:
+        unit = "unit unknown" if self.unit is None else f"unit {self.unit:g} m"
+        roots = ", ".join(self.roots) or "none"
+        return (
+            f"Motion({self.name!r}, {self.frame_count} frames at {self.fps:.6g} fps = {self.duration:.3f} s, "
+            f"{self.skeleton.joint_count} joints, roots: {roots}, {unit})"
+        )
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Motion):
+            return NotImplemented
+        if self is other:
+            return True
+        described = (self.frame_time, self.unit, self.frame_count) == (
+            other.frame_time,
+            other.unit,
+            other.frame_count,
+        )
+        return described and self.skeleton == other.skeleton and _same_frames(self, other)
+
+    def __hash__(self) -> int:
+        return hash((self.skeleton, self.frame_time, self.unit, self.frame_count))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Motion, (self.skeleton, self.frame_time, self.source, self.unit, self.name, self.dropped)
+
+
+def _same_frames(one: Motion, other: Motion) -> bool:
+    """Whether two motions on equal skeletons hold the same numbers."""
+    a, b = one.source, other.source
+    if isinstance(a, Rows) and isinstance(b, Rows):
+        return a.layout == b.layout and np.array_equal(a.values, b.values)
+    return all(
+        np.array_equal(getattr(one, key), getattr(other, key))
+        for key in ("translated", "translations", "rotations")
+    )
+
+
+def _check_fit(skeleton: Skeleton, source: Rows | Pose) -> None:
+    """Raises unless the frames are those of this skeleton."""
+    if isinstance(source, Rows):
+        if not source.layout.fits(skeleton):
+            raise SkeletonError(
+                "the channel layout is not that of the skeleton: parents or rotation slots differ. "
+                "Make both from the same parents and channels (Skeleton.post_rotation, ChannelLayout.of)."
+            )
+        return
+    slots = source.rotations.shape[1]
+    if slots != skeleton.slot_count:
+        raise SkeletonError(f"rotations for {slots} slots, but the skeleton has {skeleton.slot_count}")
+    translated = source.translated.tolist()
+    if len(set(translated)) < len(translated) or not set(translated) <= set(range(skeleton.joint_count)):
+        raise SkeletonError(f"translated joints {translated} must be distinct joints of the skeleton")
+    lacking = [skeleton.names[root] for root in skeleton.roots if root not in translated]
+    if lacking:
+        raise SkeletonError(f"root '{lacking[0]}' has no translation; every root needs one")

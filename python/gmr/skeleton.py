@@ -1,0 +1,241 @@
+"""A skeleton: a forest of joints whose bones are turned by rotation slots.
+
+The bone that ends in joint ``j`` is turned by slot ``slots[j]``. A file in post-rotation form (BVH, AMC,
+glTF) is the case where siblings share the slot that carries their parent's rotation; the General Motion
+Representation lets each bone have a slot of its own. Source: spec "General Motion Representation", rotation
+slots.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gmr import _core
+from gmr.arrays import frozen
+from gmr.errors import SkeletonError
+
+__all__ = ["End", "Skeleton", "owned_slots"]
+
+
+class End(IntEnum):
+    """What a joint is to the file that it came from."""
+
+    JOINT = 0
+    """A joint proper."""
+    SITE = 1
+    """An ``End Site``, named "<parent>_end"."""
+    TIP = 2
+    """A zero-length tip that reading added below a turning leaf without ``End Site``; never written back."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Skeleton:
+    """Names, parents, rest offsets and rotation slots of J joints; immutable.
+
+    Args:
+        names: (J,) names as the file has them; they may repeat.
+        parents: (J,) int32, -1 for a root.
+        offsets: (J, 3) float64 vector from the parent to the joint at rest, in file units.
+        slots: (J,) int32, the rotation slot that turns the bone ending in each joint; -1: the bone has its
+            parent's world rotation.
+        slot_count: S, the number of slots; slots that turn no bone are allowed.
+        links: (J,) int32, for a joint that was promoted to a root: the parent it had; -1 elsewhere.
+        ends: (J,) uint8 of :class:`End`.
+
+    Raises:
+        SkeletonError: the arrays do not fit each other, or do not make a forest.
+    """
+
+    names: tuple[str, ...]
+    parents: NDArray[np.int32]
+    offsets: NDArray[np.float64]
+    slots: NDArray[np.int32]
+    slot_count: int
+    links: NDArray[np.int32]
+    ends: NDArray[np.uint8]
+
+    def __post_init__(self) -> None:
+        count = len(self.names)
+        object.__setattr__(self, "names", tuple(self.names))
+        for field, dtype, shape in (
+            ("parents", np.int32, (count,)),
+            ("offsets", np.float64, (count, 3)),
+            ("slots", np.int32, (count,)),
+            ("links", np.int32, (count,)),
+            ("ends", np.uint8, (count,)),
+        ):
+            array = frozen(getattr(self, field), dtype)
+            if array.shape != shape:
+                raise SkeletonError(
+                    f"{field} has the shape {array.shape} where {shape} is needed: one entry a joint"
+                )
+            object.__setattr__(self, field, array)
+
+    @classmethod
+    def post_rotation(
+        cls,
+        names: Sequence[str],
+        parents: ArrayLike,
+        offsets: ArrayLike,
+        *,
+        ends: ArrayLike | None = None,
+        turning: Iterable[int] = (),
+    ) -> Skeleton:
+        """Skeleton of a post-rotation file: the children of a joint share the slot that carries its rotation.
+
+        Args:
+            names: (J,) names in file order.
+            parents: (J,) -1 for a root.
+            offsets: (J, 3) file units.
+            ends: (J,) of :class:`End`; all joints proper by default.
+            turning: joints that own a slot although nothing hangs on them (they have channels).
+        """
+        parents = np.asarray(parents, np.int32).reshape(len(names))
+        owned = owned_slots(parents, turning)
+        none = np.full(len(names), -1, np.int32)
+        return cls(
+            names=tuple(names),
+            parents=parents,
+            offsets=np.asarray(offsets, np.float64).reshape(len(names), 3),
+            slots=np.where(parents >= 0, owned[parents], -1).astype(np.int32) if len(names) else none,
+            slot_count=int(owned.max(initial=-1)) + 1,
+            links=none,
+            ends=np.zeros(len(names), np.uint8) if ends is None else np.asarray(ends, np.uint8),
+        )
+
+    @property
+    def joint_count(self) -> int:
+        """J, end sites and tips included."""
+        return len(self.names)
+
+    @cached_property
+    def topology(self) -> _core.Topology:
+        """Parents and slots as the kernels take them, with what they derive from them."""
+        try:
+            return _core.Topology(self.parents, self.slots, self.slot_count)
+        except ValueError as error:
+            raise SkeletonError(f"{error} (joints: {_some(self.names)})") from error
+
+    @cached_property
+    def roots(self) -> tuple[int, ...]:
+        """Indices of the joints without a parent, in file order."""
+        return tuple(np.flatnonzero(self.parents < 0).tolist())
+
+    @cached_property
+    def children(self) -> tuple[tuple[int, ...], ...]:
+        """Indices of each joint's children, in file order."""
+        found: list[list[int]] = [[] for _ in self.names]
+        for joint, parent in enumerate(self.parents.tolist()):
+            if parent >= 0:
+                found[parent].append(joint)
+        return tuple(tuple(joints) for joints in found)
+
+    @cached_property
+    def frame_slots(self) -> NDArray[np.int32]:
+        """(J,) slot whose world rotation is each joint's frame as BVH means it (post-rotation); -1: the
+        world's.
+
+        It is the slot that the joint's children share; a joint without children has the frame of its own
+        bone.
+
+        Raises:
+            SkeletonError: two children of a joint have different world rotations, so it has no one frame.
+        """
+        world = np.asarray(self.topology.world_slots)
+        found = world.astype(np.int32)
+        for joint, children in enumerate(self.children):
+            if not children:
+                continue
+            first, *others = children
+            found[joint] = world[first]
+            for other in others:
+                if world[other] != world[first]:
+                    raise SkeletonError(
+                        f"joint '{self.names[joint]}' has no one frame: its children '{self.names[first]}' "
+                        f"and '{self.names[other]}' turn independently. Use bone_rotations(), or "
+                        "restore_dummies() where dummies were dropped."
+                    )
+        return frozen(found, np.int32)
+
+    def index(self, joint: str | int | np.integer[Any]) -> int:
+        """Index of a joint given by name or by index.
+
+        Raises:
+            SkeletonError: no joint has the name (the nearest names are given), several have it, or the index
+                is out of range.
+        """
+        if not isinstance(joint, str):
+            if 0 <= joint < self.joint_count:
+                return int(joint)
+            raise SkeletonError(
+                f"there is no joint {joint}; the skeleton has joints 0 to {self.joint_count - 1}"
+            )
+        found = self._joints_by_name.get(joint, ())
+        if len(found) == 1:
+            return found[0]
+        if found:
+            raise SkeletonError(
+                f"{len(found)} joints are named '{joint}': say which by index, one of {list(found)}"
+            )
+        near = difflib.get_close_matches(joint, self.names, n=3)
+        hint = f"did you mean {_some(near)}?" if near else f"the skeleton has {_some(self.names)}."
+        raise SkeletonError(f"there is no joint '{joint}'; {hint}")
+
+    def indices(self, joints: Iterable[str | int | np.integer[Any]]) -> NDArray[np.int32]:
+        """(K,) int32 indices of joints given by names or indices; see :meth:`index`."""
+        return np.array([self.index(joint) for joint in joints], np.int32)
+
+    @cached_property
+    def _joints_by_name(self) -> dict[str, tuple[int, ...]]:
+        found: dict[str, tuple[int, ...]] = {}
+        for joint, name in enumerate(self.names):
+            found[name] = (*found.get(name, ()), joint)
+        return found
+
+    def __repr__(self) -> str:
+        roots = ", ".join(self.names[root] for root in self.roots)
+        return f"Skeleton({self.joint_count} joints, roots: {roots or 'none'})"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Skeleton):
+            return NotImplemented
+        return self is other or (
+            self.names == other.names
+            and self.slot_count == other.slot_count
+            and all(
+                np.array_equal(getattr(self, field), getattr(other, field))
+                for field in ("parents", "slots", "offsets", "links", "ends")
+            )
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.names, self.parents.tobytes(), self.slots.tobytes()))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        fields = (self.names, self.parents, self.offsets, self.slots, self.slot_count, self.links, self.ends)
+        return Skeleton, fields
+
+
+def owned_slots(parents: NDArray[np.int32], turning: Iterable[int] = ()) -> NDArray[np.int32]:
+    """(J,) int32: the slot that each joint of a post-rotation file owns, numbered in file order; -1 for none.
+
+    A joint owns a slot when it has children, or when it is one of ``turning`` (it has channels).
+    """
+    owns = np.zeros(len(parents), bool)
+    owns[parents[parents >= 0]] = True
+    owns[np.fromiter(turning, np.intp)] = True
+    return np.where(owns, np.cumsum(owns) - 1, -1).astype(np.int32)
+
+
+def _some(names: Sequence[str], limit: int = 8) -> str:
+    """The names in quotes, the rest of a long list as a count."""
+    listed = ", ".join(f"'{name}'" for name in names[:limit])
+    return listed if len(names) <= limit else f"{listed} and {len(names) - limit} more"

@@ -1,0 +1,62 @@
+"""Units of length: what a file counts in, and what it is wanted in."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from gmr.errors import GmrError
+
+if TYPE_CHECKING:
+    from gmr.motion import Motion
+
+__all__ = ["UNITS", "metres_per_unit", "to_unit"]
+
+UNITS = {
+    "m": 1.0,
+    "dm": 0.1,
+    "cm": 0.01,
+    "mm": 0.001,
+    "in": 0.0254,
+    "ft": 0.3048,
+    "cmu": 0.0254 / 0.45,
+}
+"""Metres per unit; "cmu" is what the CMU mocap database counts in (ASF length 0.45: inches / 0.45)."""
+
+
+def metres_per_unit(unit: float | str) -> float:
+    """Metres per unit of "m", "cm", "mm", "in", "ft", "dm" or "cmu", or of a number of metres.
+
+    Raises:
+        GmrError: the unit is none of these, or not above 0.
+    """
+    if isinstance(unit, str):
+        if unit.lower() in UNITS:
+            return UNITS[unit.lower()]
+        try:
+            unit = float(unit)
+        except ValueError:
+            known = ", ".join(UNITS)
+            raise GmrError(f"there is no unit '{unit}'; use one of {known}, or metres per unit") from None
+    if not 0 < unit < float("inf"):
+        raise GmrError(f"a unit cannot be {unit} metres; give more than 0")
+    return float(unit)
+
+
+def to_unit(motion: Motion, unit: float | str) -> Motion:
+    """The same motion measured in another unit: offsets and translations are scaled, angles stay.
+
+    Raises:
+        GmrError: the motion does not say in what unit it is.
+    """
+    from gmr.scaling import scaled
+
+    wanted = metres_per_unit(unit)
+    if motion.unit is None:
+        raise GmrError(
+            f"{motion.name or 'this motion'} does not say in what unit it is, so it cannot be converted; "
+            "declare it first: motion.with_unit('cm')"
+        )
+    if wanted == motion.unit:
+        return motion
+    return replace(scaled(motion, motion.unit / wanted), unit=wanted)

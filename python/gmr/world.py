@@ -1,0 +1,95 @@
+"""World positions and rotations of a motion, straight from what it holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from gmr import _core
+from gmr.errors import GmrError
+from gmr.frames import Rows
+
+if TYPE_CHECKING:
+    from gmr.motion import Motion
+
+__all__ = ["motion_positions", "motion_rotations"]
+
+FloatArray = NDArray[np.float32] | NDArray[np.float64]
+
+_THREADING_PAYS = 1_000_000
+"""Joint positions above which sharing the work among threads wins over starting them."""
+
+
+def motion_positions(
+    motion: Motion,
+    dtype: DTypeLike | None,
+    joints: Iterable[str | int | np.integer[Any]] | None,
+    out: FloatArray | None,
+    threads: int | None,
+) -> FloatArray:
+    """World positions; see :meth:`gmr.Motion.positions`."""
+    chosen = None if joints is None else motion.skeleton.indices(joints)
+    count = motion.skeleton.joint_count if chosen is None else len(chosen)
+    shape = (motion.frame_count, count, 3)
+    if out is None:
+        out = np.empty(shape, _float_type(dtype))
+    else:
+        _check_out(out, shape, dtype)
+    _forward_kinematics(motion, chosen, None, out, None, threads)
+    return out
+
+
+def motion_rotations(
+    motion: Motion, slots: NDArray[np.int32], dtype: DTypeLike | None, threads: int | None
+) -> FloatArray:
+    """(F, M, 4) world rotation of each of ``slots`` (-1: identity)."""
+    out: FloatArray = np.empty((motion.frame_count, len(slots), 4), _float_type(dtype))
+    _forward_kinematics(motion, np.empty(0, np.int32), slots, None, out, threads)
+    return out
+
+
+def _forward_kinematics(
+    motion: Motion,
+    joints: NDArray[np.int32] | None,
+    slots: NDArray[np.int32] | None,
+    positions: FloatArray | None,
+    rotations: FloatArray | None,
+    threads: int | None,
+) -> None:
+    """Runs the kernel that fits what the motion holds: Euler rows as read, or quaternions."""
+    skeleton, source = motion.skeleton, motion.source
+    if threads is None:
+        threads = 0 if motion.frame_count * skeleton.joint_count > _THREADING_PAYS else 1
+    wanted = (joints, slots, positions, rotations, threads)
+    if isinstance(source, Rows):
+        layout = source.layout
+        _core.forward_kinematics_euler(
+            skeleton.topology, source.values, layout.rotation_columns, layout.rotation_axes,
+            layout.translated, layout.translation_columns, layout.adds_offset, skeleton.offsets, *wanted,
+        )  # fmt: skip
+        return
+    dtype = (positions if positions is not None else rotations).dtype  # type: ignore[union-attr]
+    _core.forward_kinematics(
+        skeleton.topology, source.rotations.astype(dtype, copy=False), source.translated,
+        source.translations.astype(dtype, copy=False), skeleton.offsets.astype(dtype, copy=False), *wanted,
+    )  # fmt: skip
+
+
+def _float_type(dtype: DTypeLike | None) -> np.dtype[Any]:
+    found = np.dtype(np.float32 if dtype is None else dtype)
+    if found not in (np.dtype(np.float32), np.dtype(np.float64)):
+        raise GmrError(f"positions and rotations come as float32 or float64, not {found}")
+    return found
+
+
+def _check_out(out: FloatArray, shape: tuple[int, ...], dtype: DTypeLike | None) -> None:
+    """Raises unless ``out`` can be written into as asked."""
+    wanted = _float_type(out.dtype if dtype is None else dtype)
+    if out.shape != shape or out.dtype != wanted or not out.flags.c_contiguous or not out.flags.writeable:
+        raise GmrError(
+            f"out must be a writable, C-contiguous {wanted} array of shape {shape}; "
+            f"this one is {out.dtype} {out.shape}"
+        )
