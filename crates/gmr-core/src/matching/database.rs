@@ -1,1 +1,242 @@
-//! database (to be written).
+//! The motion database: all clips one after another at one rate, with what matching compares and playback shows.
+//!
+//! Rows are frames at [`Database::rate`]. Lengths are metres, Y is up, forward is +Z, left is +X. Poses are kept in the
+//! character's frame: origin at the row's simulation root on the ground, turned so that the root's heading is +Z.
+//! [`super::builder`] makes it.
+
+use crate::matching::features::Schema;
+use crate::matching::normalization::Normalization;
+use crate::skeleton::Topology;
+use std::ops::Range;
+
+/// Where a clip lies in the database.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Clip {
+    /// Its rows.
+    pub rows: Range<u32>,
+    /// Which of the database's bone sets its skeleton has; see [`Database::offsets`].
+    pub bones: u32,
+}
+
+/// What the simulation root does from a row to the next one of its clip.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Step {
+    /// Displacement on the ground, `x` to the left and `z` forward, in the row's character frame, metres.
+    pub displacement: [f32; 2],
+    /// Change of heading, radians, positive counter-clockwise seen from above.
+    pub turn: f32,
+}
+
+/// All clips, their features and their poses; immutable once built.
+#[derive(Debug, Clone)]
+pub struct Database {
+    pub(super) topology: Topology,
+    pub(super) translated: Vec<i32>,
+    pub(super) bone_sets: Vec<Vec<f32>>,
+    pub(super) schema: Schema,
+    pub(super) rate: f64,
+    pub(super) normalization: Normalization,
+    pub(super) constant_groups: Vec<usize>,
+    pub(super) rows: Rows,
+}
+
+/// Everything that is kept per row, N rows.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Rows {
+    pub(super) clips: Vec<Clip>,
+    pub(super) clip_of: Vec<u32>,
+    pub(super) features: Vec<f32>,
+    pub(super) candidates: Vec<bool>,
+    pub(super) tags: Vec<u32>,
+    pub(super) steps: Vec<Step>,
+    pub(super) ground: Vec<[f64; 2]>,
+    pub(super) heading: Vec<f64>,
+    pub(super) positions: Vec<f32>,
+    pub(super) rotations: Vec<f32>,
+    pub(super) translations: Vec<f32>,
+}
+
+impl Database {
+    /// Frames a second.
+    #[must_use]
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// Number of rows N.
+    #[must_use]
+    pub fn row_count(&self) -> usize {
+        self.rows.clip_of.len()
+    }
+
+    /// Numbers per feature row D.
+    #[must_use]
+    pub fn dims(&self) -> usize {
+        self.schema.dims()
+    }
+
+    /// The feature groups; tells which dimensions are trajectory.
+    #[must_use]
+    pub fn schema(&self) -> &Schema {
+        &self.schema
+    }
+
+    /// Offset and scale of the features.
+    #[must_use]
+    pub fn normalization(&self) -> &Normalization {
+        &self.normalization
+    }
+
+    /// The feature groups that do not vary in this database and so were not scaled.
+    #[must_use]
+    pub fn constant_groups(&self) -> &[usize] {
+        &self.constant_groups
+    }
+
+    /// Normalised features `(N, D)`.
+    #[must_use]
+    pub fn features(&self) -> &[f32] {
+        &self.rows.features
+    }
+
+    /// Normalised features of one row, D numbers.
+    ///
+    /// # Panics
+    /// When there is no such row (so do all accessors that take a row).
+    #[must_use]
+    pub fn feature_row(&self, row: u32) -> &[f32] {
+        row_of(&self.rows.features, row, self.dims())
+    }
+
+    /// The clips, in the order in which they were added.
+    #[must_use]
+    pub fn clips(&self) -> &[Clip] {
+        &self.rows.clips
+    }
+
+    /// Index of the clip that each row belongs to (N).
+    #[must_use]
+    pub fn clip_of(&self) -> &[u32] {
+        &self.rows.clip_of
+    }
+
+    /// The rows of the clip that `row` belongs to.
+    #[must_use]
+    pub fn clip_rows(&self, row: u32) -> Range<u32> {
+        self.rows.clips[self.rows.clip_of[row as usize] as usize].rows.clone()
+    }
+
+    /// The row played after `row`: the next of its clip, `None` at the clip's end.
+    #[must_use]
+    pub fn next_row(&self, row: u32) -> Option<u32> {
+        (row + 1 < self.clip_rows(row).end).then_some(row + 1)
+    }
+
+    /// Which rows may be jumped to (N): those whose clip holds all that their features look at.
+    #[must_use]
+    pub fn candidates(&self) -> &[bool] {
+        &self.rows.candidates
+    }
+
+    /// Tag bits of each row (N).
+    #[must_use]
+    pub fn tags(&self) -> &[u32] {
+        &self.rows.tags
+    }
+
+    /// What the root does from each row to the next (N). The last row of a clip repeats the step before it.
+    #[must_use]
+    pub fn steps(&self) -> &[Step] {
+        &self.rows.steps
+    }
+
+    /// What the root does from `row` to the next one.
+    #[must_use]
+    pub fn step(&self, row: u32) -> Step {
+        self.rows.steps[row as usize]
+    }
+
+    /// Ground position of the simulation root in its clip's own world (N), metres.
+    #[must_use]
+    pub fn ground(&self) -> &[[f64; 2]] {
+        &self.rows.ground
+    }
+
+    /// Heading of the simulation root in its clip's own world (N), radians, continuous within a clip.
+    #[must_use]
+    pub fn heading(&self) -> &[f64] {
+        &self.rows.heading
+    }
+
+    /// Positions of all joints in the character's frame `(N, J, 3)`.
+    #[must_use]
+    pub fn positions(&self) -> &[f32] {
+        &self.rows.positions
+    }
+
+    /// Positions of one row `(J, 3)`.
+    #[must_use]
+    pub fn position_row(&self, row: u32) -> &[f32] {
+        row_of(&self.rows.positions, row, 3 * self.joint_count())
+    }
+
+    /// Local slot quaternions `(N, S, 4)`, xyzw; the slots that stand under the world are in the character's frame.
+    #[must_use]
+    pub fn rotations(&self) -> &[f32] {
+        &self.rows.rotations
+    }
+
+    /// Slot quaternions of one row `(S, 4)`.
+    #[must_use]
+    pub fn rotation_row(&self, row: u32) -> &[f32] {
+        row_of(&self.rows.rotations, row, 4 * self.slot_count())
+    }
+
+    /// Translations `(N, T, 3)` of the translated joints; those of roots are in the character's frame.
+    #[must_use]
+    pub fn translations(&self) -> &[f32] {
+        &self.rows.translations
+    }
+
+    /// Translations of one row `(T, 3)`.
+    #[must_use]
+    pub fn translation_row(&self, row: u32) -> &[f32] {
+        row_of(&self.rows.translations, row, 3 * self.translated.len())
+    }
+
+    /// Parents and slots of the skeleton that all clips share.
+    #[must_use]
+    pub fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    /// Number of joints J.
+    #[must_use]
+    pub fn joint_count(&self) -> usize {
+        self.topology.joint_count()
+    }
+
+    /// Number of rotation slots S.
+    #[must_use]
+    pub fn slot_count(&self) -> usize {
+        self.topology.slot_count()
+    }
+
+    /// The joints with a translation in every frame (T).
+    #[must_use]
+    pub fn translated(&self) -> &[i32] {
+        &self.translated
+    }
+
+    /// Offsets `(J, 3)`, metres, of the skeleton of the clip that `row` belongs to: performers differ in size.
+    #[must_use]
+    pub fn offsets(&self, row: u32) -> &[f32] {
+        let clip = &self.rows.clips[self.rows.clip_of[row as usize] as usize];
+        &self.bone_sets[clip.bones as usize]
+    }
+}
+
+fn row_of(values: &[f32], row: u32, width: usize) -> &[f32] {
+    let start = row as usize * width;
+    &values[start..start + width]
+}
