@@ -1,1 +1,175 @@
-//! index (to be written).
+//! Exact nearest neighbour in squared distance over the feature rows of a motion database.
+//!
+//! The cost of a frame is the sum, over the dimensions in their order, of `(q_d - x_d)^2` in `f32`, each step
+//! rounded by itself ([`brute_force::cost`]). The best frame has the lowest cost; ties go to the lowest frame index.
+//! Every instruction set and every thread count gives the same bits.
+
+use std::ops::Range;
+
+mod batch;
+mod best;
+pub mod brute_force;
+mod error;
+
+pub use batch::Batch;
+pub use error::IndexError;
+
+use best::{Best, Nearest, Ranked};
+use error::{check_query, check_rows};
+
+/// A frame and what it costs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Row of the features that the index was built from.
+    pub frame: u32,
+    /// Squared distance between query and frame.
+    pub cost: f32,
+}
+
+impl Hit {
+    /// No frame at all: what fills the places of a batch that no candidate takes.
+    pub const NONE: Self = Self { frame: u32::MAX, cost: f32::INFINITY };
+
+    /// Whether this hit comes before `other`: a lower cost, or the same cost and a lower frame.
+    #[must_use]
+    pub fn beats(self, other: Self) -> bool {
+        self.cost < other.cost || (self.cost == other.cost && self.frame < other.frame)
+    }
+}
+
+/// What to look for, and among which frames.
+#[derive(Debug, Clone)]
+pub struct Query<'a> {
+    /// One number a dimension, finite.
+    pub features: &'a [f32],
+    /// Bits that a frame must all carry; 0 asks for none.
+    pub tags: u32,
+    /// Frames that are no candidates for this query, such as the neighbourhood of the one now playing.
+    pub exclude: Range<u32>,
+    /// Only frames that cost strictly less are hits; infinity asks for no limit.
+    pub max_cost: f32,
+}
+
+impl<'a> Query<'a> {
+    /// Looks for `features` among all candidates.
+    #[must_use]
+    pub fn new(features: &'a [f32]) -> Self {
+        Self { features, tags: 0, exclude: 0..0, max_cost: f32::INFINITY }
+    }
+
+    /// Whether a frame with these tags may be an answer.
+    #[must_use]
+    pub fn admits(&self, frame: u32, tags: u32) -> bool {
+        tags & self.tags == self.tags && !self.exclude.contains(&frame)
+    }
+
+    /// The hit that every answer must beat: strictly below `max_cost`, for no frame index is below 0.
+    fn limit(&self) -> Hit {
+        Hit { frame: 0, cost: self.max_cost }
+    }
+}
+
+/// The candidates of a database, laid out for search.
+#[derive(Debug, Clone)]
+pub struct Index {
+    dims: usize,
+    frame_count: usize,
+    frames: Vec<u32>,
+    features: Vec<f32>,
+    tags: Vec<u32>,
+}
+
+impl Index {
+    /// Indexes the rows of `features` (frames x `dims`) for which `candidates` holds.
+    ///
+    /// `tags` holds one word of bits a frame; without it no frame carries any.
+    ///
+    /// # Errors
+    /// When `dims` is 0, an array is not of one row or entry a frame, there are more than `u32::MAX - 1` frames, or
+    /// a candidate's feature is not finite.
+    pub fn build(
+        features: &[f32],
+        dims: usize,
+        candidates: &[bool],
+        tags: Option<&[u32]>,
+    ) -> Result<Self, IndexError> {
+        check_rows(features, dims, candidates, tags)?;
+        let frames: Vec<u32> = (0..candidates.len() as u32).filter(|&f| candidates[f as usize]).collect();
+        let rows = frames.iter().flat_map(|&f| &features[f as usize * dims..][..dims]).copied().collect();
+        let tags = frames.iter().map(|&f| tags.map_or(0, |tags| tags[f as usize])).collect();
+        Ok(Self { dims, frame_count: candidates.len(), frames, features: rows, tags })
+    }
+
+    /// Numbers a row.
+    #[must_use]
+    pub fn dims(&self) -> usize {
+        self.dims
+    }
+
+    /// Rows that the index was built from, candidates or not.
+    #[must_use]
+    pub fn frame_count(&self) -> usize {
+        self.frame_count
+    }
+
+    /// Rows that can be found.
+    #[must_use]
+    pub fn candidate_count(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// The best frame below `query.max_cost`, or none.
+    ///
+    /// # Errors
+    /// When the query is not of `dims` finite numbers.
+    pub fn search(&self, query: &Query) -> Result<Option<Hit>, IndexError> {
+        check_query(query.features, self.dims, query.max_cost)?;
+        let start = query.limit();
+        let mut nearest = Nearest(start);
+        self.visit(query, &mut nearest);
+        Ok((nearest.0 != start).then_some(nearest.0))
+    }
+
+    /// The better of `start` and the best frame: `start`, the continuing pose with its cost, counts as one more
+    /// candidate, excluded or not, and bounds the search from its beginning.
+    ///
+    /// A start of frame 0 is left only for what costs strictly less. `query.max_cost` is not looked at.
+    ///
+    /// # Errors
+    /// When the query is not of `dims` finite numbers, or the start's cost is NaN.
+    pub fn search_from(&self, query: &Query, start: Hit) -> Result<Hit, IndexError> {
+        check_query(query.features, self.dims, start.cost)?;
+        let mut nearest = Nearest(start);
+        self.visit(query, &mut nearest);
+        Ok(nearest.0)
+    }
+
+    /// Fills `hits` with the best frames below `query.max_cost`, best first, and says how many there are; the rest
+    /// becomes [`Hit::NONE`].
+    ///
+    /// # Errors
+    /// When the query is not of `dims` finite numbers.
+    pub fn search_top(&self, query: &Query, hits: &mut [Hit]) -> Result<usize, IndexError> {
+        check_query(query.features, self.dims, query.max_cost)?;
+        Ok(self.rank(query, hits))
+    }
+
+    /// As [`Index::search_top`], of a query that was checked.
+    fn rank(&self, query: &Query, hits: &mut [Hit]) -> usize {
+        let mut ranked = Ranked::new(hits, query.limit());
+        self.visit(query, &mut ranked);
+        ranked.finish()
+    }
+
+    fn visit(&self, query: &Query, best: &mut impl Best) {
+        for (i, row) in self.features.chunks_exact(self.dims).enumerate() {
+            let hit = Hit { frame: self.frames[i], cost: brute_force::cost(query.features, row) };
+            if hit.beats(best.bound()) && query.admits(hit.frame, self.tags[i]) {
+                best.offer(hit);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
