@@ -1,1 +1,25 @@
 //! Blocks of text numbers to `f64` rows and back, bit-exact.
+//!
+//! - [`ParseRows`]: text, one row a line, to values; every finite decimal gives the nearest `f64`, as `str::parse` does.
+//! - [`FormatRows`]: values to text, each as the shortest decimal that reads back bit-identical.
+//!
+//! A token ends at any byte up to `' '`; blanks are space, tab, vertical tab and form feed; a line ends at `\n`, `\r`
+//! or both; lines without a token count for nothing. What is no finite decimal number is a [`Fault`].
+
+mod fault;
+mod format;
+mod layout;
+mod parse;
+mod scalar;
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "aarch64")]
+mod neon;
+
+#[cfg(test)]
+mod tests;
+
+pub use fault::{Fault, Flaw};
+pub use format::{FormatRows, NotFinite};
+pub use parse::{ParseRows, RowsRead, count_rows};

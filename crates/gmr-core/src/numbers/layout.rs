@@ -1,0 +1,41 @@
+//! Tables that the fast number readers share: how to line up the digits of a token, and powers of ten.
+
+/// Bytes that one register holds, and so one more than the longest token that the fast readers take.
+pub(super) const WIDTH: usize = 16;
+
+/// `10^-(length - point - 1)` for a token of `length` bytes whose point is at `point` is the inverse of
+/// `DIVISORS[length - point]`; `point == length` means that it has none.
+pub(super) const DIVISORS: [f64; WIDTH] =
+    [1e0, 1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14];
+
+/// Powers of ten that an `f64` holds exactly.
+pub(super) const EXACT_POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
+    1e19, 1e20, 1e21, 1e22,
+];
+
+/// `[length][point]`: which byte of a token goes where, so that its digits end at the last lane and its point is gone.
+pub(super) static GATHER: [[[u8; WIDTH]; WIDTH]; WIDTH] = gather();
+
+const fn gather() -> [[[u8; WIDTH]; WIDTH]; WIDTH] {
+    // An index with its high bit set gives a zero byte on x86, one of 16 or more on AArch64.
+    let mut table = [[[0x80; WIDTH]; WIDTH]; WIDTH];
+    let mut length = 0;
+    while length < WIDTH {
+        let mut point = 0;
+        while point < WIDTH {
+            let mut lane = WIDTH;
+            let mut byte = length;
+            while byte > 0 {
+                byte -= 1;
+                if byte != point {
+                    lane -= 1;
+                    table[length][point][lane] = byte as u8;
+                }
+            }
+            point += 1;
+        }
+        length += 1;
+    }
+    table
+}

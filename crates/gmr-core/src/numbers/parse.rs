@@ -1,0 +1,162 @@
+//! Rows of numbers from text.
+
+use super::fault::{Fault, Flaw};
+use super::scalar::{self, Token, is_blank, is_line_end};
+use crate::{Isa, ShapeError};
+use std::ops::Range;
+
+/// A block of numbers, one row a line.
+#[derive(Debug, Clone, Copy)]
+pub struct ParseRows<'a> {
+    /// The whole text, so that places in it mean something to whoever reads an error.
+    pub text: &'a [u8],
+    /// Where the block begins.
+    pub start: usize,
+    /// Values in a row.
+    pub columns: usize,
+}
+
+/// How far the reading of a block came.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RowsRead {
+    /// Rows that are whole.
+    pub rows: usize,
+    /// Byte after the last whole row's last value, where nothing is wrong.
+    pub end: usize,
+    /// What ended the reading before `out` was full and before the text ended.
+    pub fault: Option<Fault>,
+}
+
+impl ParseRows<'_> {
+    /// The most rows that the rest of the text has room for, whatever a header declares.
+    #[must_use]
+    pub fn most_rows(&self) -> usize {
+        let left = self.text.len().saturating_sub(self.start);
+        left.div_ceil(2).checked_div(self.columns).unwrap_or(0)
+    }
+
+    /// Reads rows into `out`, `(rows, columns)`, until it is full, the text ends, or something is wrong.
+    ///
+    /// # Errors
+    /// When `out` does not hold whole rows. Faults of the text are part of the result.
+    pub fn run(&self, out: &mut [f64]) -> Result<RowsRead, ShapeError> {
+        self.run_on(Isa::current(), out)
+    }
+
+    /// [`Self::run`] with a chosen instruction set, for tests.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_on(&self, isa: Isa, out: &mut [f64]) -> Result<RowsRead, ShapeError> {
+        let whole = out.len().checked_div(self.columns).unwrap_or(0) * self.columns;
+        ShapeError::check("out", whole, out.len())?;
+        if out.is_empty() {
+            return Ok(RowsRead { rows: 0, end: self.start, fault: None });
+        }
+        Ok(match isa {
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx2 | Isa::Avx512 if isa.is_available() => super::avx2::rows(self, out),
+            #[cfg(target_arch = "aarch64")]
+            Isa::Neon => super::neon::rows(self, out),
+            _ => rows(self, out, |_, _| None),
+        })
+    }
+}
+
+/// The loop of every instruction set; `fast` gives a value and its end, or `None` where the scalar reader must look.
+///
+/// `fast` may take a token only where the scalar reader gives the same value and end.
+#[inline(always)]
+pub(super) fn rows(
+    job: &ParseRows<'_>,
+    out: &mut [f64],
+    fast: impl Fn(&[u8], usize) -> Option<(f64, usize)>,
+) -> RowsRead {
+    let text = job.text;
+    let mut end = job.start;
+    for (row, values) in out.chunks_exact_mut(job.columns).enumerate() {
+        let stop = |end: usize, fault: Option<Fault>| RowsRead { rows: row, end, fault };
+        let mut at = row_start(text, end);
+        if at == text.len() {
+            return stop(end, None);
+        }
+        for (field, value) in values.iter_mut().enumerate() {
+            let (number, next) = match fast(text, at) {
+                Some(read) => read,
+                None => match scalar::read(text, at) {
+                    Token::Value(number, next) => (number, next),
+                    other => return stop(end, Some(fault(text, row, field, other))),
+                },
+            };
+            *value = number;
+            at = skip_blanks(text, next);
+        }
+        if text.get(at).is_some_and(|&byte| !is_line_end(byte)) && !is_padding(text, at) {
+            let rest = at..line_end(text, at);
+            return stop(end, Some(Fault { flaw: Flaw::RowTooLong, row, field: job.columns, token: rest }));
+        }
+        end = at;
+    }
+    RowsRead { rows: out.len() / job.columns, end, fault: None }
+}
+
+/// Number of lines from `start` on that hold more than blanks and NUL bytes.
+#[must_use]
+pub fn count_rows(text: &[u8], start: usize) -> usize {
+    let empty = |byte: &u8| is_blank(*byte) || *byte == 0;
+    let rest = text.get(start..).unwrap_or_default();
+    rest.split(|&byte| is_line_end(byte)).filter(|line| !line.iter().all(empty)).count()
+}
+
+#[inline(always)]
+fn skip_blanks(text: &[u8], mut at: usize) -> usize {
+    while text.get(at).is_some_and(|&byte| is_blank(byte)) {
+        at += 1;
+    }
+    at
+}
+
+/// The next token after any number of blank lines; the end of the text where only NUL bytes are left.
+#[inline(always)]
+fn row_start(text: &[u8], mut at: usize) -> usize {
+    while text.get(at).is_some_and(|&byte| is_blank(byte) || is_line_end(byte)) {
+        at += 1;
+    }
+    if is_padding(text, at) { text.len() } else { at }
+}
+
+/// Whether `at` begins the NUL bytes with which some programs fill up a file's last block.
+#[inline(always)]
+fn is_padding(text: &[u8], at: usize) -> bool {
+    text.get(at) == Some(&0)
+        && text[at..].iter().all(|&byte| byte == 0 || is_blank(byte) || is_line_end(byte))
+}
+
+fn line_end(text: &[u8], at: usize) -> usize {
+    text[at..].iter().position(|&byte| is_line_end(byte)).map_or(text.len(), |length| at + length)
+}
+
+#[cold]
+fn fault(text: &[u8], row: usize, field: usize, token: Token) -> Fault {
+    let (flaw, token) = match token {
+        Token::Value(_, end) => (Flaw::NotANumber, end..end),
+        Token::Overflow(token) => (Flaw::Overflow, token),
+        Token::Other(token) => (flaw(text, &token), token),
+    };
+    Fault { flaw, row, field, token }
+}
+
+fn flaw(text: &[u8], token: &Range<usize>) -> Flaw {
+    let at_end = row_start(text, token.end) == text.len();
+    if token.is_empty() || is_padding(text, token.start) {
+        return if at_end { Flaw::Cut } else { Flaw::RowTooShort };
+    }
+    if token.end == text.len() && may_go_on(&text[token.clone()]) { Flaw::Cut } else { Flaw::NotANumber }
+}
+
+/// Whether a number could begin with these bytes, which are none: `-`, `1.5e`, `1.5e-`.
+fn may_go_on(token: &[u8]) -> bool {
+    let mut longer = token.to_vec();
+    longer.push(b'0');
+    matches!(scalar::read(&longer, 0), Token::Value(..) | Token::Overflow(_))
+}
