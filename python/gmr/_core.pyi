@@ -61,3 +61,32 @@ class Index:
         Raises:
             ValueError: when shapes do not fit or a query is not finite.
         """
+
+# --- numbers ---
+
+def parse_rows(
+    data: bytes, start: int, columns: int, limit: int
+) -> tuple[NDArray[np.float64], int, tuple[str, int, int, int, int, int] | None]:
+    """Rows of numbers from text, one row a line, each value the nearest float64.
+
+    Args:
+        data: the whole text.
+        start: byte at which the rows begin.
+        columns: numbers in a row.
+        limit: the most rows to read; memory is bounded by the text whatever this says.
+
+    Returns:
+        The rows, (F, columns); the byte after the last whole row; what ended the reading early, if anything:
+        "not a number", "overflow", "row too short", "row too long" or "cut" (the text ends inside the row),
+        its row and value from 0, its line from 1, the bytes from and to which the token reaches.
+    """
+
+def count_rows(data: bytes, start: int) -> int:
+    """Number of lines from byte ``start`` on that hold more than blanks and NUL bytes."""
+
+def format_rows(rows: NDArray[np.float64]) -> tuple[bytes | None, tuple[int, int] | None]:
+    """Text of (F, C) C-contiguous rows, one line each: the shortest decimals that read back bit-identical.
+
+    Returns:
+        The text and None; or None and the row and column of the first value that is not finite.
+    """
