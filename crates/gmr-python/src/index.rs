@@ -1,6 +1,7 @@
 //! Binding of the nearest-neighbour index.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use gmr_core::matching::index::{Batch, Hit, Index};
 use numpy::ndarray::Array2;
@@ -11,7 +12,7 @@ use pyo3::prelude::*;
 type Answers<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<i64>>);
 
 #[pyclass(frozen, name = "Index", module = "gmr._core")]
-struct PyIndex(Index);
+pub(crate) struct PyIndex(pub(crate) Arc<Index>);
 
 #[pymethods]
 impl PyIndex {
@@ -32,7 +33,7 @@ impl PyIndex {
         };
         let tags = tags.as_ref().map(|tags| contiguous("tags", tags.as_slice())).transpose()?;
         let built = py.detach(|| Index::build(features, dims, candidates, tags));
-        built.map(Self).map_err(|error| PyValueError::new_err(error.to_string()))
+        built.map(|index| Self(Arc::new(index))).map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
     #[getter]

@@ -29,11 +29,14 @@
 use crate::error::ShapeError;
 use crate::matching::database::{Clip, Database, Rows, Step};
 use crate::matching::features::{Extraction, Schema, extract};
+use crate::matching::ground::{Placement, sin_cos};
+use crate::matching::index::{Index, IndexError};
 use crate::matching::normalization::Normalization;
-use crate::matching::root::{RootTrack, into_heading};
+use crate::matching::root::RootTrack;
 use crate::skeleton::{NONE, Topology};
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2};
 use std::fmt;
+use std::sync::Arc;
 
 /// One clip to be added: F frames at the database's rate, metres, Y up, as the world has them.
 #[derive(Debug, Clone, Copy)]
@@ -53,7 +56,7 @@ pub struct ClipPoses<'a> {
 }
 
 /// Why clips make no database.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum DatabaseError {
     /// Arrays that do not fit together.
     Shape(ShapeError),
@@ -76,6 +79,8 @@ pub enum DatabaseError {
     },
     /// More rows than a row number can count.
     TooManyRows,
+    /// Features that cannot be searched.
+    Index(IndexError),
 }
 
 impl fmt::Display for DatabaseError {
@@ -94,6 +99,7 @@ impl fmt::Display for DatabaseError {
             Self::NoCandidates { needed } => {
                 write!(f, "no clip has the {needed} frames that a row and its future need")
             }
+            Self::Index(error) => error.fmt(f),
             Self::TooManyRows => f.write_str("a database holds at most 4,294,967,295 frames"),
         }
     }
@@ -104,6 +110,12 @@ impl std::error::Error for DatabaseError {}
 impl From<ShapeError> for DatabaseError {
     fn from(error: ShapeError) -> Self {
         Self::Shape(error)
+    }
+}
+
+impl From<IndexError> for DatabaseError {
+    fn from(error: IndexError) -> Self {
+        Self::Index(error)
     }
 }
 
@@ -189,7 +201,7 @@ impl DatabaseBuilder {
     /// The database of all clips added, scaled by its own candidates or by `frozen`.
     ///
     /// # Errors
-    /// When no clip holds a candidate, or `frozen` belongs to another schema.
+    /// When no clip holds a candidate, `frozen` belongs to another schema, or a feature is too large for a number.
     pub fn finish(mut self, frozen: Option<Normalization>) -> Result<Database, DatabaseError> {
         if !self.rows.candidates.contains(&true) {
             return Err(DatabaseError::NoCandidates { needed: self.needed_frames() });
@@ -203,6 +215,8 @@ impl DatabaseBuilder {
             None => Normalization::fit(&self.schema, &self.rows.features, &self.rows.candidates)?,
         };
         normalization.normalize(&mut self.rows.features);
+        let rows = &self.rows;
+        let index = Index::build(&rows.features, self.schema.dims(), &rows.candidates, Some(&rows.tags))?;
         Ok(Database {
             topology: self.topology,
             translated: self.translated,
@@ -211,6 +225,7 @@ impl DatabaseBuilder {
             rate: self.rate,
             normalization,
             constant_groups,
+            index: Arc::new(index),
             rows: self.rows,
         })
     }
@@ -240,8 +255,8 @@ impl DatabaseBuilder {
     /// Positions, rotations and translations, turned from the world into the character's frame.
     fn add_poses(&mut self, clip: &ClipPoses<'_>) {
         let (joints, slots) = (self.topology.joint_count(), self.topology.slot_count());
-        for (frame, (&ground, &heading)) in clip.root.ground.iter().zip(&clip.root.heading).enumerate() {
-            let frame_of = CharacterFrame::new(ground, heading);
+        for frame in 0..clip.root.len() {
+            let frame_of = CharacterFrame::new(clip.root.at(frame));
             for p in clip.positions[frame * joints * 3..][..joints * 3].as_chunks::<3>().0 {
                 self.rows.positions.extend(frame_of.point(p.map(f64::from)));
             }
@@ -271,36 +286,37 @@ impl DatabaseBuilder {
     }
 }
 
-/// A root's place and heading, ready to turn points and rotations into it.
+/// A root's placement, ready to turn points and rotations into it.
 struct CharacterFrame {
-    origin: DVec3,
+    origin: DVec2,
     turn: DQuat,
     sin: f64,
     cos: f64,
 }
 
 impl CharacterFrame {
-    fn new([x, z]: [f64; 2], heading: f64) -> Self {
-        let (sin, cos) = heading.sin_cos();
-        Self { origin: DVec3::new(x, 0.0, z), turn: DQuat::from_rotation_y(-heading), sin, cos }
+    fn new(root: Placement) -> Self {
+        let (sin, cos) = sin_cos(root.heading);
+        let (half_sin, half_cos) = sin_cos(-0.5 * root.heading);
+        Self { origin: root.position, turn: DQuat::from_xyzw(0.0, half_sin, 0.0, half_cos), sin, cos }
     }
 
-    fn point(&self, p: [f64; 3]) -> [f32; 3] {
-        let (x, z) = (p[0] - self.origin.x, p[2] - self.origin.z);
-        [x * self.cos - z * self.sin, p[1], x * self.sin + z * self.cos].map(|v| v as f32)
+    fn point(&self, [x, y, z]: [f64; 3]) -> [f32; 3] {
+        let (x, z) = (x - self.origin.x, z - self.origin.y);
+        [x * self.cos - z * self.sin, y, x * self.sin + z * self.cos].map(|v| v as f32)
     }
 }
 
 /// From each frame to the next; the last repeats the one before.
 fn steps(root: &RootTrack) -> Vec<Step> {
-    let mut steps: Vec<Step> = (1..root.ground.len())
+    let mut steps: Vec<Step> = (1..root.len())
         .map(|i| {
-            let ([x0, z0], [x1, z1]) = (root.ground[i - 1], root.ground[i]);
-            let displacement = into_heading([x1 - x0, z1 - z0], root.heading[i - 1]).map(|v| v as f32);
-            Step { displacement, turn: (root.heading[i] - root.heading[i - 1]) as f32 }
+            let (from, to) = (root.at(i - 1), root.at(i));
+            let displacement = from.unrotate(to.position - from.position).as_vec2().to_array();
+            Step { displacement, turn: (to.heading - from.heading) as f32 }
         })
         .collect();
-    if !root.ground.is_empty() {
+    if !root.is_empty() {
         steps.push(steps.last().copied().unwrap_or_default());
     }
     steps
@@ -309,7 +325,8 @@ fn steps(root: &RootTrack) -> Vec<Step> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::matching::root::out_of_heading;
+    use crate::matching::index::{Hit, Query};
+    use glam::DVec3;
 
     const FRAMES: usize = 90;
 
@@ -385,14 +402,14 @@ mod tests {
         let mut builder = builder();
         builder.add_clip(&walk.clip()).unwrap();
         let database = builder.finish(None).unwrap();
-        let ([mut x, mut z], mut heading) = (database.ground()[0], database.heading()[0]);
-        for row in 0..FRAMES - 1 {
-            let step = database.step(row as u32);
-            let [dx, dz] = out_of_heading(step.displacement.map(f64::from), heading);
-            (x, z, heading) = (x + dx, z + dz, heading + f64::from(step.turn));
+        let mut root = walk.root.at(0);
+        assert_eq!((root.position.to_array(), root.heading), (database.ground()[0], database.heading()[0]));
+        for row in 0..FRAMES as u32 - 1 {
+            let step = database.step(row);
+            root = root.advanced(step.displacement.map(f64::from).into(), f64::from(step.turn));
         }
-        let [end_x, end_z] = walk.root.ground[FRAMES - 1];
-        assert!((x - end_x).abs() < 1e-5 && (z - end_z).abs() < 1e-5 && (heading - 0.483_333).abs() < 1e-4);
+        let end = walk.root.at(FRAMES - 1);
+        assert!((root.position - end.position).length() < 1e-5 && (root.heading - end.heading).abs() < 1e-5);
         assert_eq!(database.step(FRAMES as u32 - 1), database.step(FRAMES as u32 - 2));
         assert!(database.step(3).displacement[1] > 0.0 && database.step(3).turn > 0.0);
     }
@@ -408,6 +425,9 @@ mod tests {
         for row in 0..2 * FRAMES {
             assert_eq!(database.candidates()[row], row % FRAMES < 30);
         }
+        assert_eq!(database.index().candidate_count(), 60);
+        let found = database.index().search(&Query::new(database.feature_row(107))).unwrap();
+        assert_eq!(found, Some(Hit { frame: 107, cost: 0.0 }));
         assert_eq!(database.next_row(88), Some(89));
         assert_eq!(database.next_row(89), None);
         assert_eq!(database.clip_rows(90), 90..180);

@@ -5,9 +5,11 @@
 //! [`super::builder`] makes it.
 
 use crate::matching::features::Schema;
+use crate::matching::index::Index;
 use crate::matching::normalization::Normalization;
 use crate::skeleton::Topology;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Where a clip lies in the database.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,6 +39,7 @@ pub struct Database {
     pub(super) rate: f64,
     pub(super) normalization: Normalization,
     pub(super) constant_groups: Vec<usize>,
+    pub(super) index: Arc<Index>,
     pub(super) rows: Rows,
 }
 
@@ -106,6 +109,12 @@ impl Database {
     #[must_use]
     pub fn feature_row(&self, row: u32) -> &[f32] {
         row_of(&self.rows.features, row, self.dims())
+    }
+
+    /// The candidates, laid out for search.
+    #[must_use]
+    pub fn index(&self) -> &Arc<Index> {
+        &self.index
     }
 
     /// The clips, in the order in which they were added.

@@ -4,7 +4,9 @@
 //! Everything is expressed in the character's frame: the simulation root of the row's own frame.
 
 use crate::error::ShapeError;
-use crate::matching::root::{RootTrack, into_heading};
+use crate::matching::ground::direction;
+use crate::matching::root::RootTrack;
+use glam::{DVec2, DVec3};
 use std::fmt;
 use std::ops::Range;
 
@@ -262,7 +264,7 @@ pub struct Extraction<'a> {
 /// # Errors
 /// When the arrays do not fit together.
 pub fn extract(schema: &Schema, clip: &Extraction<'_>, out: &mut Vec<f32>) -> Result<(), ShapeError> {
-    let frames = clip.root.ground.len();
+    let frames = clip.root.len();
     ShapeError::check("root headings", frames, clip.root.heading.len())?;
     ShapeError::check("positions", frames * clip.joint_count * 3, clip.positions.len())?;
     out.reserve(frames * schema.dims());
@@ -280,52 +282,46 @@ pub fn extract(schema: &Schema, clip: &Extraction<'_>, out: &mut Vec<f32>) -> Re
 impl Extraction<'_> {
     /// One sample at frame `at`, seen from the root of `frame`.
     fn measure(&self, measure: Measure, frame: usize, at: usize, out: &mut Vec<f32>) {
-        let heading = self.root.heading[frame];
-        let [x0, z0] = self.root.ground[frame];
+        let root = self.root.at(frame);
+        let turned = |v: DVec3| {
+            let ground = root.unrotate(DVec2::new(v.x, v.z)).as_vec2();
+            [ground.x, v.y as f32, ground.y]
+        };
         match measure {
             Measure::Position { joint } => {
-                let [x, y, z] = self.position(at, joint);
-                let [x, z] = into_heading([x - x0, z - z0], heading);
-                out.extend([x, y, z].map(|v| v as f32));
+                let origin = DVec3::new(root.position.x, 0.0, root.position.y);
+                out.extend(turned(self.position(at, joint) - origin));
             }
-            Measure::Velocity { joint } => {
-                let [x, y, z] = self.velocity(at, joint);
-                let [x, z] = into_heading([x, z], heading);
-                out.extend([x, y, z].map(|v| v as f32));
-            }
+            Measure::Velocity { joint } => out.extend(turned(self.velocity(at, joint))),
             Measure::RootPosition => {
-                let [x, z] = self.root.ground[at];
-                out.extend(into_heading([x - x0, z - z0], heading).map(|v| v as f32));
+                out.extend(root.unrotate(self.root.at(at).position - root.position).as_vec2().to_array());
             }
             Measure::RootFacing => {
-                let (sin, cos) = (self.root.heading[at] - heading).sin_cos();
-                out.extend([sin, cos].map(|v| v as f32));
+                out.extend(direction(self.root.heading[at] - root.heading).as_vec2().to_array());
             }
         }
     }
 
-    fn position(&self, frame: usize, joint: usize) -> [f64; 3] {
+    fn position(&self, frame: usize, joint: usize) -> DVec3 {
         let start = 3 * (frame * self.joint_count + joint);
-        [0, 1, 2].map(|axis| f64::from(self.positions[start + axis]))
+        DVec3::from([0, 1, 2].map(|axis| f64::from(self.positions[start + axis])))
     }
 
     /// World velocity by central differences; at the clip's ends, of the one step there is.
-    fn velocity(&self, frame: usize, joint: usize) -> [f64; 3] {
+    fn velocity(&self, frame: usize, joint: usize) -> DVec3 {
         let before = frame.saturating_sub(1);
-        let after = (frame + 1).min(self.root.ground.len() - 1);
+        let after = (frame + 1).min(self.root.len() - 1);
         if before == after {
-            return [0.0; 3];
+            return DVec3::ZERO;
         }
-        let per_second = self.rate / (after - before) as f64;
-        let (from, to) = (self.position(before, joint), self.position(after, joint));
-        [0, 1, 2].map(|axis| (to[axis] - from[axis]) * per_second)
+        (self.position(after, joint) - self.position(before, joint)) * (self.rate / (after - before) as f64)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::matching::root::{RootTrack, out_of_heading};
+    use crate::matching::ground::Placement;
 
     /// Two joints (hips and a foot) on a circle walked at 1 m/s, seen in a world turned and moved by `world`.
     fn clip(frames: usize, turn: f64, shift: [f64; 2]) -> (Vec<f32>, RootTrack) {
@@ -334,13 +330,12 @@ mod tests {
         for i in 0..frames {
             let t = i as f64 / 60.0;
             let heading = 0.8 * t + turn;
-            let center = [1.25 * (1.0 - (0.8 * t).cos()), 1.25 * (0.8 * t).sin()];
-            let [x, z] = out_of_heading(center, turn);
-            let ground = [x + shift[0], z + shift[1]];
-            let [fx, fz] = out_of_heading([0.1, 0.2 * (7.0 * t).sin()], heading);
-            positions
-                .extend([ground[0], 0.9, ground[1], ground[0] + fx, 0.05, ground[1] + fz].map(|v| v as f32));
-            root.ground.push(ground);
+            let world = Placement { position: shift.into(), heading: turn };
+            let center = DVec2::new(1.25 * (1.0 - (0.8 * t).cos()), 1.25 * (0.8 * t).sin());
+            let here = Placement { position: world.position + world.rotate(center), heading };
+            let foot = here.position + here.rotate(DVec2::new(0.1, 0.2 * (7.0 * t).sin()));
+            positions.extend([here.position.x, 0.9, here.position.y, foot.x, 0.05, foot.y].map(|v| v as f32));
+            root.ground.push(here.position.to_array());
             root.heading.push(heading);
         }
         (positions, root)

@@ -7,6 +7,7 @@
 //! for the position, one second for the direction); Savitzky and Golay (1964).
 
 use crate::error::ShapeError;
+use crate::matching::ground::Placement;
 use std::f64::consts::{PI, TAU};
 
 /// Seconds of hip positions that one smoothed position is fitted to.
@@ -33,6 +34,29 @@ pub struct RootTrack {
     pub ground: Vec<[f64; 2]>,
     /// Heading in radians, forward = `(sin, cos)` in `(x, z)`, continuous from frame to frame (not wrapped).
     pub heading: Vec<f64>,
+}
+
+impl RootTrack {
+    /// Number of frames.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.ground.len()
+    }
+
+    /// Whether there is no frame.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.ground.is_empty()
+    }
+
+    /// Where the root is at a frame.
+    ///
+    /// # Panics
+    /// When there is no such frame.
+    #[must_use]
+    pub fn at(&self, frame: usize) -> Placement {
+        Placement { position: self.ground[frame].into(), heading: self.heading[frame] }
+    }
 }
 
 /// Inputs from which the simulation root of a clip is found.
@@ -146,19 +170,6 @@ pub fn wrap(angle: f64) -> f64 {
     (angle + PI).rem_euclid(TAU) - PI
 }
 
-/// `v` given in the world, seen in a frame of heading `heading`: turned by `-heading` about the vertical.
-#[must_use]
-pub fn into_heading([x, z]: [f64; 2], heading: f64) -> [f64; 2] {
-    let (sin, cos) = heading.sin_cos();
-    [x * cos - z * sin, x * sin + z * cos]
-}
-
-/// `v` given in a frame of heading `heading`, seen in the world: the inverse of [`into_heading`].
-#[must_use]
-pub fn out_of_heading(v: [f64; 2], heading: f64) -> [f64; 2] {
-    into_heading(v, -heading)
-}
-
 /// Least-squares cubic through each `window` of samples, read at its middle; at the ends, the first and the last
 /// window's cubic read where the samples are. Any cubic comes out as it went in, to the last sample.
 ///
@@ -210,7 +221,8 @@ mod tests {
         (0..frames)
             .flat_map(|i| {
                 let ([x, z], heading) = path(i as f64 / 60.0);
-                let [lx, lz] = out_of_heading([0.1, 0.0], heading);
+                let root = Placement { position: [x, z].into(), heading };
+                let [lx, lz] = root.rotate([0.1, 0.0].into()).to_array();
                 [x, 0.9, z, x + lx, 0.9, z + lz, x - lx, 0.9, z - lz].map(|v| v as f32)
             })
             .collect()
@@ -254,7 +266,6 @@ mod tests {
         assert!(root_of(&walk(3, |_| ([0.0, 0.0], 0.0))).heading[0].abs() < 1e-6);
         let quarter = root_of(&walk(3, |_| ([0.0, 0.0], PI / 2.0))).heading[0];
         assert!((quarter - PI / 2.0).abs() < 1e-6, "forward is then +X, so left is -Z");
-        assert_eq!(into_heading([1.0, 0.0], PI / 2.0)[1], 1.0);
     }
 
     #[test]
