@@ -28,6 +28,69 @@ impl fmt::Display for ShapeError {
 
 impl std::error::Error for ShapeError {}
 
+/// What a job over motion data can be refused for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum JobError {
+    /// An array of the wrong length.
+    Shape(ShapeError),
+    /// An index that points outside what it indexes.
+    Index {
+        /// The array that holds the index.
+        what: &'static str,
+        /// Its place in that array.
+        at: usize,
+        /// The index found.
+        found: i64,
+        /// How many there are to choose from.
+        count: usize,
+    },
+    /// Angles about these three axes (0: x, 1: y, 2: z) do not reach every rotation.
+    Axes {
+        /// The slot.
+        slot: usize,
+        /// Its axes.
+        axes: [u8; 3],
+    },
+    /// A slot that turns no bone hangs nowhere, so it has no world rotation.
+    IdleSlot {
+        /// The slot.
+        slot: usize,
+    },
+    /// An instruction set that this machine lacks.
+    Isa(crate::Isa),
+}
+
+impl From<ShapeError> for JobError {
+    fn from(error: ShapeError) -> Self {
+        Self::Shape(error)
+    }
+}
+
+impl fmt::Display for JobError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Shape(error) => error.fmt(f),
+            Self::Index { what, at, found, count } => {
+                write!(f, "{what} holds {found} at place {at}, but there are {count} to choose from")
+            }
+            Self::Axes { slot, axes } => write!(
+                f,
+                "slot {slot} turns about the axes {axes:?}, which do not reach every rotation; \
+                 use three axes of which no two neighbours are the same"
+            ),
+            Self::IdleSlot { slot } => {
+                write!(
+                    f,
+                    "slot {slot} turns no bone, so it has no world rotation; ask for slots that turn one"
+                )
+            }
+            Self::Isa(isa) => write!(f, "this machine cannot run {isa}"),
+        }
+    }
+}
+
+impl std::error::Error for JobError {}
+
 /// Why parents and slots do not make a forest.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum TopologyError {

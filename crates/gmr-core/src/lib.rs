@@ -3,6 +3,7 @@
 //! - [`numbers`]: blocks of text numbers to `f64` rows and back, bit-exact.
 //! - [`skeleton`]: a forest of joints whose bones are turned by rotation slots.
 //! - [`rotation`]: quaternions and the twelve Euler orders.
+//! - [`lanes`]: the same arithmetic on one to sixteen frames at once, for each instruction set.
 //! - [`kinematics`]: forward kinematics of many frames at once.
 //! - [`matching`]: motion matching: features, exact search, controller, trials.
 //!
@@ -13,12 +14,13 @@
 pub mod error;
 pub mod isa;
 pub mod kinematics;
+pub mod lanes;
 pub mod matching;
 pub mod numbers;
 pub mod parallel;
 pub mod rotation;
 pub mod skeleton;
 
-pub use error::{ShapeError, TopologyError};
+pub use error::{JobError, ShapeError, TopologyError};
 pub use isa::Isa;
 pub use skeleton::Topology;

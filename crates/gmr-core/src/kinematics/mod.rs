@@ -1,1 +1,124 @@
-//! Forward kinematics of many frames at once.
+//! Forward kinematics: from local rotations to world positions and rotations, many frames at once.
+//!
+//! Per frame: a slot's world rotation is that of the slot above it times its own, `W_s = W_above(s) R_s`; a joint's
+//! position is its parent's plus its bone's vector turned by the bone's slot, `P_j = P_parent(j) + W_s(j) t_j`; a
+//! root's position is its translation. Source: the General Motion Representation.
+//!
+//! [`scalar`] is the definition, one frame at a time.
+
+use crate::error::{JobError, ShapeError};
+use crate::lanes::Real;
+use crate::rotation::EulerColumns;
+use crate::skeleton::Topology;
+
+mod plan;
+pub mod scalar;
+
+use plan::Plan;
+
+/// Where the rotations and translations of each frame come from.
+#[derive(Debug, Clone, Copy)]
+pub enum Pose<'a, T> {
+    /// Local rotations as quaternions, and the vectors of the translated joints.
+    Quaternions {
+        /// (F, S, 4): local rotation of each slot.
+        rotations: &'a [T],
+        /// Divide each rotation by its length. Else they must be unit to rounding: a length of 1 + e scales the
+        /// bones below by about 1 + 2e.
+        normalize: bool,
+        /// (F, T, 3): a root's place in the world, another joint's vector from its parent in the frame of its slot.
+        translations: &'a [T],
+    },
+    /// Rows as files hold them: Euler angles in degrees, and positions.
+    Rows {
+        /// (F, C).
+        rows: &'a [f64],
+        /// C.
+        column_count: usize,
+        /// The angles of each slot.
+        angles: EulerColumns<'a>,
+        /// (T, 3): the columns of x, y and z of each translated joint; -1: the offset's component.
+        translation_columns: &'a [[i32; 3]],
+        /// Whether these columns are added to the joint's offset (else they replace it).
+        adds_offset: bool,
+    },
+}
+
+/// The job: which skeleton, which poses, and what is asked of them.
+#[derive(Debug, Clone, Copy)]
+pub struct ForwardKinematics<'a, T> {
+    /// Parents and slots.
+    pub topology: &'a Topology,
+    /// (J, 3): the vector from its parent to each joint (a root: its place), where it is not translated per frame.
+    pub offsets: &'a [f64],
+    /// (T,): the joints that are translated per frame.
+    pub translated: &'a [i32],
+    /// Their poses.
+    pub pose: Pose<'a, T>,
+    /// F.
+    pub frame_count: usize,
+    /// (K,): the joints whose positions are asked for; `None`: all.
+    pub joints: Option<&'a [i32]>,
+    /// (M,): the slots whose world rotations are asked for, -1: the identity; `None`: all.
+    pub rotation_slots: Option<&'a [i32]>,
+    /// How many threads share the frames; 0: all cores. The bits do not depend on it.
+    pub threads: usize,
+}
+
+/// Where the answer goes.
+#[derive(Debug)]
+pub struct World<'a, T> {
+    /// (F, K, 3): world positions.
+    pub positions: Option<&'a mut [T]>,
+    /// (F, M, 4): world rotations.
+    pub rotations: Option<&'a mut [T]>,
+}
+
+/// Computes what `world` has room for.
+///
+/// NaN in a pose gives NaN in what hangs below it in that frame, and nothing else.
+///
+/// # Errors
+/// When a length does not fit, an index points outside its array, or a slot that turns no bone is asked for.
+pub fn forward_kinematics<T: Real>(
+    job: &ForwardKinematics<'_, T>,
+    world: World<'_, T>,
+) -> Result<(), JobError> {
+    let plan = Plan::new(job, world.positions.is_some(), world.rotations.is_some())?;
+    check_poses(job)?;
+    if let Some(positions) = &world.positions {
+        ShapeError::check("positions", job.frame_count * plan.joints_out.len() * 3, positions.len())?;
+    }
+    if let Some(rotations) = &world.rotations {
+        ShapeError::check("rotations out", job.frame_count * plan.slots_out.len() * 4, rotations.len())?;
+    }
+    scalar::run(job, &plan, world);
+    Ok(())
+}
+
+fn check_poses<T: Real>(job: &ForwardKinematics<'_, T>) -> Result<(), JobError> {
+    let slot_count = job.topology.slot_count();
+    match job.pose {
+        Pose::Quaternions { rotations, translations, .. } => {
+            ShapeError::check("rotations", job.frame_count * slot_count * 4, rotations.len())?;
+            ShapeError::check(
+                "translations",
+                job.frame_count * job.translated.len() * 3,
+                translations.len(),
+            )?;
+        }
+        Pose::Rows { rows, column_count, angles, translation_columns, .. } => {
+            ShapeError::check("rows", job.frame_count * column_count, rows.len())?;
+            ShapeError::check("rotation_columns", slot_count * 3, angles.columns.len() * 3)?;
+            ShapeError::check(
+                "translation_columns",
+                job.translated.len() * 3,
+                translation_columns.len() * 3,
+            )?;
+            angles.check(column_count)?;
+            let columns = translation_columns.as_flattened();
+            crate::rotation::check_indices("translation_columns", columns, column_count)?;
+        }
+    }
+    Ok(())
+}

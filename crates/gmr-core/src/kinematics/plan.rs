@@ -1,0 +1,139 @@
+//! The order of work for one job: only the slots and joints that the answer needs, each after what it hangs on.
+
+use super::ForwardKinematics;
+use crate::error::{JobError, ShapeError};
+use crate::lanes::Real;
+use crate::rotation::check_indices;
+use crate::skeleton::NONE;
+
+/// A slot and the bones it turns; indices into the plan's own, shorter lists unless said otherwise.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Turn {
+    /// The slot in the topology; `None`: no rotation (for bones that hang straight in the world).
+    pub(super) slot: Option<usize>,
+    /// The turn above.
+    pub(super) above: Option<usize>,
+    /// The bones it turns, in [`Plan::bones`].
+    pub(super) bones: std::ops::Range<usize>,
+}
+
+/// A joint, and the bone that ends in it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Bone<T> {
+    /// The bone that ends in the parent; `None`: a root, whose vector is its place.
+    pub(super) parent: Option<usize>,
+    /// The bone's vector where it is the same in all frames; what missing columns and added positions start from.
+    pub(super) offset: [T; 3],
+    /// Its place among the translated joints.
+    pub(super) translated: Option<usize>,
+}
+
+/// Turns and bones, each after those it hangs on.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Plan<T> {
+    pub(super) turns: Vec<Turn>,
+    pub(super) bones: Vec<Bone<T>>,
+    /// For each position asked for: its bone.
+    pub(super) joints_out: Vec<usize>,
+    /// For each rotation asked for: its turn; `None`: the identity.
+    pub(super) slots_out: Vec<Option<usize>>,
+}
+
+impl<T: Real> Plan<T> {
+    pub(super) fn new(
+        job: &ForwardKinematics<'_, T>,
+        has_positions: bool,
+        has_rotations: bool,
+    ) -> Result<Self, JobError> {
+        let topology = job.topology;
+        let (joint_count, slot_count) = (topology.joint_count(), topology.slot_count());
+        ShapeError::check("offsets", 3 * joint_count, job.offsets.len())?;
+        let translated = places(job.translated, joint_count)?;
+        let joints = asked("joints", job.joints, joint_count, has_positions)?;
+        let slots = asked("rotation_slots", job.rotation_slots, slot_count, has_rotations)?;
+        if let Some(at) = joints.iter().position(|&joint| joint == NONE) {
+            return Err(JobError::Index { what: "joints", at, found: NONE.into(), count: joint_count });
+        }
+
+        let needed_joints = with_ancestors(&joints, topology.parents());
+        let turning =
+            (0..joint_count).filter(|&joint| needed_joints[joint]).map(|j| topology.world_slots()[j]);
+        let wanted: Vec<i32> = slots.iter().copied().chain(turning).collect();
+        let needed_slots = with_ancestors(&wanted, topology.slot_parents());
+
+        let mut plan = Self { turns: vec![], bones: vec![], joints_out: vec![], slots_out: vec![] };
+        let mut turn_of = vec![None; slot_count];
+        plan.turns.push(Turn { slot: None, above: None, bones: 0..0 });
+        for slot in topology.slot_order().iter().map(|&slot| slot as usize).filter(|&s| needed_slots[s]) {
+            let above = index(topology.slot_parents()[slot]).and_then(|above| turn_of[above]);
+            turn_of[slot] = Some(plan.turns.len());
+            plan.turns.push(Turn { slot: Some(slot), above, bones: 0..0 });
+        }
+
+        let turn = |joint: usize| index(topology.world_slots()[joint]).and_then(|s| turn_of[s]).unwrap_or(0);
+        let in_order = topology.order().iter().map(|&joint| joint as usize);
+        let mut order: Vec<usize> = in_order.filter(|&joint| needed_joints[joint]).collect();
+        order.sort_by_key(|&joint| turn(joint));
+        let mut bone_of = vec![None; joint_count];
+        for joint in order {
+            let bone = plan.bones.len();
+            bone_of[joint] = Some(bone);
+            plan.bones.push(Bone {
+                parent: index(topology.parents()[joint]).and_then(|parent| bone_of[parent]),
+                offset: std::array::from_fn(|axis| T::from_f64(job.offsets[3 * joint + axis])),
+                translated: translated[joint],
+            });
+            let bones = &mut plan.turns[turn(joint)].bones;
+            bones.start = if bones.start == bones.end { bone } else { bones.start };
+            bones.end = bone + 1;
+        }
+        plan.joints_out = joints.iter().filter_map(|&joint| bone_of[joint as usize]).collect();
+        for slot in slots {
+            plan.slots_out.push(match index(slot) {
+                None => None,
+                Some(slot) => Some(turn_of[slot].ok_or(JobError::IdleSlot { slot })?),
+            });
+        }
+        Ok(plan)
+    }
+}
+
+fn index(index: i32) -> Option<usize> {
+    usize::try_from(index).ok()
+}
+
+/// Where in `listed` each joint stands.
+fn places(listed: &[i32], joint_count: usize) -> Result<Vec<Option<usize>>, JobError> {
+    let mut places = vec![None; joint_count];
+    for (at, &joint) in listed.iter().enumerate() {
+        let place = index(joint).and_then(|joint| places.get_mut(joint));
+        let found = joint.into();
+        *place.ok_or(JobError::Index { what: "translated", at, found, count: joint_count })? = Some(at);
+    }
+    Ok(places)
+}
+
+/// What is asked for, or all there is; nothing where there is no room for it.
+fn asked(
+    what: &'static str,
+    asked: Option<&[i32]>,
+    count: usize,
+    has_room: bool,
+) -> Result<Vec<i32>, JobError> {
+    let asked = asked.map_or_else(|| (0..count as i32).collect(), <[i32]>::to_vec);
+    check_indices(what, &asked, count)?;
+    Ok(if has_room { asked } else { vec![] })
+}
+
+/// Whether each index is among `wanted` or above one of them.
+fn with_ancestors(wanted: &[i32], parents: &[i32]) -> Vec<bool> {
+    let mut needed = vec![false; parents.len()];
+    for &start in wanted {
+        let mut next = index(start);
+        while let Some(i) = next.filter(|&i| !needed[i]) {
+            needed[i] = true;
+            next = index(parents[i]);
+        }
+    }
+    needed
+}

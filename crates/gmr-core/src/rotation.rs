@@ -1,1 +1,0 @@
-//! Rotations: quaternions `(x, y, z, w)` and the twelve Euler orders.

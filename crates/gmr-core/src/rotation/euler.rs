@@ -1,0 +1,273 @@
+//! The twelve Euler orders: rows of degrees to quaternions, and back.
+//!
+//! Angles compose in the written order: axes (2, 0, 1) mean `R = Rz Rx Ry`.
+//! The way back is the one formula of Bernardes and Viollet, "Quaternion to Euler angles conversion: A direct, general
+//! and computationally efficient method" (2022): an order of three different axes is one whose first and last are
+//! equal, seen through a quarter turn about the middle axis.
+
+use super::quaternion::{multiply_axis, normalize};
+use crate::error::{JobError, ShapeError};
+use crate::lanes::Real;
+
+/// Three axes in composing order; 0: x, 1: y, 2: z.
+pub type Axes = [u8; 3];
+
+/// Where the angles of each slot stand in a row, and about which axes they turn.
+#[derive(Debug, Clone, Copy)]
+pub struct EulerColumns<'a> {
+    /// (S, 3): the column of each angle, -1 where there is none (angle 0).
+    pub columns: &'a [[i32; 3]],
+    /// (S, 3): the axis of each angle, in composing order.
+    pub axes: &'a [Axes],
+}
+
+impl EulerColumns<'_> {
+    /// `Ok` when every column is in a row of `column_count` numbers and every axis is one of three.
+    pub(crate) fn check(&self, column_count: usize) -> Result<(), JobError> {
+        ShapeError::check("rotation_axes", 3 * self.columns.len(), 3 * self.axes.len())?;
+        check_indices("rotation_columns", self.columns.as_flattened(), column_count)?;
+        match self.axes.as_flattened().iter().position(|&axis| axis > 2) {
+            None => Ok(()),
+            Some(at) => {
+                let found = self.axes.as_flattened()[at].into();
+                Err(JobError::Index { what: "rotation_axes", at, found, count: 3 })
+            }
+        }
+    }
+
+    /// The rotation of one slot in one row of degrees.
+    pub(crate) fn quaternion<T: Real>(&self, slot: usize, row: &[f64]) -> [T; 4] {
+        let mut q = [T::ZERO, T::ZERO, T::ZERO, T::ONE];
+        for (&column, &axis) in self.columns[slot].iter().zip(&self.axes[slot]) {
+            if let Ok(column) = usize::try_from(column) {
+                let (sin, cos) = (0.5 * row[column].to_radians()).sin_cos();
+                q = multiply_axis(q, axis, T::from_f64(sin), T::from_f64(cos));
+            }
+        }
+        q
+    }
+}
+
+/// `Ok` when every index is below `count`, or -1.
+pub(crate) fn check_indices(what: &'static str, indices: &[i32], count: usize) -> Result<(), JobError> {
+    let inside = |&index: &i32| index == -1 || usize::try_from(index).is_ok_and(|index| index < count);
+    match indices.iter().position(|index| !inside(index)) {
+        None => Ok(()),
+        Some(at) => Err(JobError::Index { what, at, found: indices[at].into(), count }),
+    }
+}
+
+/// The rotations of all slots: `rows` (F, C) in degrees to `out` (F, S, 4).
+///
+/// # Errors
+/// When a length does not fit or a column or axis does not exist.
+pub fn euler_to_quaternions<T: Real>(
+    rows: &[f64],
+    column_count: usize,
+    angles: EulerColumns<'_>,
+    out: &mut [T],
+) -> Result<(), JobError> {
+    angles.check(column_count)?;
+    let slot_count = angles.columns.len();
+    let frame_count = rows.len().checked_div(column_count).unwrap_or(0);
+    ShapeError::check("rows", frame_count * column_count, rows.len())?;
+    if column_count > 0 {
+        ShapeError::check("out", frame_count * slot_count * 4, out.len())?;
+    }
+    for (frame, pose) in out.chunks_exact_mut((4 * slot_count).max(1)).enumerate() {
+        let row = &rows[frame * column_count..][..column_count];
+        for (slot, q) in pose.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+            *q = angles.quaternion(slot, row);
+        }
+    }
+    Ok(())
+}
+
+/// Angles in degrees (F, S, 3) about the axes (S, 3) of each slot, from `quaternions` (F, S, 4), which need no unit
+/// length.
+///
+/// Of all the angles that name a rotation, each frame takes those nearest to the frame before, so that curves are
+/// continuous; the first frame's middle angle is between -90 and 90 (0 and 180 where first and last axis are
+/// equal). Where first and last angle turn about the same line, the last keeps its value.
+///
+/// # Errors
+/// When a length does not fit, or two neighbouring axes are the same.
+pub fn quaternions_to_euler<T: Real>(
+    quaternions: &[T],
+    axes: &[Axes],
+    degrees: &mut [f64],
+) -> Result<(), JobError> {
+    if let Some(slot) = axes.iter().position(|&a| a[0] == a[1] || a[1] == a[2] || a.iter().any(|&a| a > 2)) {
+        return Err(JobError::Axes { slot, axes: axes[slot] });
+    }
+    let slot_count = axes.len();
+    let frame_count = degrees.len() / (3 * slot_count).max(1);
+    ShapeError::check("degrees", frame_count * slot_count * 3, degrees.len())?;
+    ShapeError::check("quaternions", frame_count * slot_count * 4, quaternions.len())?;
+
+    let poses = quaternions.as_chunks::<4>().0;
+    let angles = degrees.as_chunks_mut::<3>().0;
+    for (index, q) in poses.iter().enumerate() {
+        let before = index.checked_sub(slot_count).map(|i| angles[i]);
+        angles[index] = decompose(q.map(Real::to_f64), axes[index % slot_count], before);
+    }
+    Ok(())
+}
+
+/// Below this sine of half the middle angle the outer angles cannot be told apart: taking them for one line turns
+/// the rotation by less than this, and above it rounding moves them by less than 1e-6 degrees.
+const LOCK: f64 = 1e-8;
+
+fn decompose(q: [f64; 4], axes: Axes, before: Option<[f64; 3]>) -> [f64; 3] {
+    let [i, j, k] = axes.map(usize::from);
+    let is_proper = i == k;
+    let third = 3 - i - j;
+    // +1 where i, j, third are in the order of x, y, z.
+    let parity = if (j + 3 - i) % 3 == 1 { 1.0 } else { -1.0 };
+
+    let q = normalize(q);
+    let quarter = std::f64::consts::FRAC_1_SQRT_2;
+    let q = if is_proper { q } else { multiply_axis(q, axes[1], quarter, quarter) };
+    let (along, across) = (q[3].hypot(q[i]), q[j].hypot(q[third]));
+    let sum = 2.0 * q[i].atan2(q[3]);
+    let difference = 2.0 * (parity * q[third]).atan2(q[j]);
+
+    let mirror = if is_proper { 1.0 } else { -parity };
+    let middle = 2.0 * across.atan2(along).to_degrees() - if is_proper { 0.0 } else { 90.0 };
+    let kept = before.map_or(0.0, |angles| mirror * angles[2]);
+    let (first, last) = if across < LOCK {
+        (sum.to_degrees() - kept, kept)
+    } else if along < LOCK {
+        (difference.to_degrees() + kept, kept)
+    } else {
+        ((0.5 * (sum + difference)).to_degrees(), (0.5 * (sum - difference)).to_degrees())
+    };
+    nearest([first, middle, mirror * last], is_proper, before)
+}
+
+/// Of the two families of angles that name the same rotation, and their whole turns, the one nearest to `before`.
+fn nearest(angles: [f64; 3], is_proper: bool, before: Option<[f64; 3]>) -> [f64; 3] {
+    let Some(before) = before.filter(|b| b.iter().all(|a| a.is_finite())) else {
+        return [unwind(angles[0], 0.0), angles[1], unwind(angles[2], 0.0)];
+    };
+    let flipped_middle = if is_proper { -angles[1] } else { 180.0 - angles[1] };
+    let flipped = [angles[0] + 180.0, flipped_middle, angles[2] + 180.0];
+    let near = |angles: [f64; 3]| std::array::from_fn(|n| unwind(angles[n], before[n]));
+    let distance =
+        |angles: &[f64; 3]| angles.iter().zip(&before).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+    let (direct, other): ([f64; 3], [f64; 3]) = (near(angles), near(flipped));
+    if distance(&other) < distance(&direct) { other } else { direct }
+}
+
+/// `angle` moved by whole turns to within half a turn of `target`; of two as near, the greater.
+fn unwind(angle: f64, target: f64) -> f64 {
+    angle - 360.0 * ((angle - target) / 360.0 - 0.5).ceil()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rotation::dot;
+    use glam::{DQuat, DVec3};
+    use proptest::prelude::*;
+
+    pub(crate) const ORDERS: [Axes; 12] = [
+        [0, 1, 2],
+        [0, 2, 1],
+        [1, 0, 2],
+        [1, 2, 0],
+        [2, 0, 1],
+        [2, 1, 0],
+        [0, 1, 0],
+        [0, 2, 0],
+        [1, 0, 1],
+        [1, 2, 1],
+        [2, 0, 2],
+        [2, 1, 2],
+    ];
+
+    fn compose(degrees: [f64; 3], axes: Axes) -> DQuat {
+        (0..3).fold(DQuat::IDENTITY, |q, n| {
+            q * DQuat::from_axis_angle(DVec3::AXES[axes[n] as usize], degrees[n].to_radians())
+        })
+    }
+
+    fn same_rotation(a: [f64; 4], b: DQuat) -> bool {
+        dot(a, b.to_array()).abs() > 1.0 - 1e-14
+    }
+
+    fn any_degrees() -> impl Strategy<Value = [f64; 3]> {
+        let special = prop::sample::select(vec![-180.0, -90.0, -45.0, 0.0, 1e-9, 90.0, 90.0 + 1e-8, 180.0]);
+        prop::array::uniform3(prop_oneof![3 => -400.0..400.0, 1 => special])
+    }
+
+    proptest! {
+        #[test]
+        fn every_order_composes_as_written(degrees in any_degrees(), order in 0_usize..12) {
+            let axes = ORDERS[order];
+            let mut out = [0.0; 4];
+            let angles = EulerColumns { columns: &[[2, 0, 1]], axes: &[axes] };
+            euler_to_quaternions(&[degrees[1], degrees[2], degrees[0]], 3, angles, &mut out).unwrap();
+            prop_assert!(same_rotation(out, compose(degrees, axes)));
+        }
+
+        #[test]
+        fn angles_come_back_as_the_same_rotation(degrees in any_degrees(), order in 0_usize..12) {
+            let axes = ORDERS[order];
+            let q = compose(degrees, axes);
+            let mut back = [0.0; 3];
+            quaternions_to_euler(&q.to_array(), &[axes], &mut back).unwrap();
+            prop_assert!(same_rotation(compose(back, axes).to_array(), q), "{back:?}");
+            let middle = if axes[0] == axes[2] { 0.0..=180.0 } else { -90.0..=90.0 };
+            prop_assert!(middle.contains(&back[1]), "{back:?}");
+        }
+
+        #[test]
+        fn a_slow_motion_has_no_jumps(
+            start in prop::array::uniform3(-400.0_f64..400.0),
+            speed in prop::array::uniform3(-3.0_f64..3.0),
+            order in 0_usize..12,
+        ) {
+            let axes = ORDERS[order];
+            let frames: Vec<f64> = (0..300)
+                .flat_map(|f| compose(std::array::from_fn(|n| start[n] + speed[n] * f64::from(f)), axes).to_array())
+                .collect();
+            let mut back = vec![0.0; 900];
+            quaternions_to_euler(&frames, &[axes], &mut back).unwrap();
+            let angles = back.as_chunks::<3>().0;
+            for (q, &angles) in frames.as_chunks::<4>().0.iter().zip(angles) {
+                prop_assert!(same_rotation(*q, compose(angles, axes)));
+            }
+            // A frame exactly in the lock keeps its last angle, and the next catches up.
+            let steps = angles.windows(2).flat_map(|w| (0..3).map(move |n| (w[1][n] - w[0][n]).abs()));
+            prop_assert!(steps.fold(0.0, f64::max) < 10.0);
+        }
+    }
+
+    #[test]
+    fn missing_columns_are_angles_of_zero() {
+        let mut out = [0.0_f64; 8];
+        let angles = EulerColumns { columns: &[[-1, 0, -1], [-1, -1, -1]], axes: &[[2, 0, 1], [0, 1, 2]] };
+        euler_to_quaternions(&[90.0], 1, angles, &mut out).unwrap();
+        assert!(same_rotation([out[0], out[1], out[2], out[3]], compose([90.0, 0.0, 0.0], [0, 1, 2])));
+        assert_eq!(out[4..], [0.0, 0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn what_names_no_rotation_is_refused_or_is_nan() {
+        let axes = [[0, 1, 2]];
+        let angles = |columns| EulerColumns { columns, axes: &axes };
+        let mut out = [0.0_f64; 4];
+        assert!(euler_to_quaternions(&[0.0; 3], 3, angles(&[[0, 1, 3]]), &mut out).is_err());
+        assert!(euler_to_quaternions(&[0.0; 3], 3, angles(&[[0, 1, -2]]), &mut out).is_err());
+        assert!(euler_to_quaternions(&[0.0; 4], 3, angles(&[[0, 1, 2]]), &mut out).is_err());
+        euler_to_quaternions(&[f64::NAN, f64::INFINITY, 0.0], 3, angles(&[[0, 1, 2]]), &mut out).unwrap();
+        assert!(out.iter().all(|c| c.is_nan()));
+
+        assert!(quaternions_to_euler(&[0.0; 4], &[[0, 0, 1]], &mut [0.0; 3]).is_err());
+        let mut degrees = [0.0; 6];
+        quaternions_to_euler(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], &axes, &mut degrees).unwrap();
+        assert!(degrees[0].is_nan());
+        assert_eq!(degrees[3..], [0.0; 3]);
+    }
+}

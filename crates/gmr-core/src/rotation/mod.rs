@@ -1,0 +1,15 @@
+//! Rotations: quaternions `(x, y, z, w)` and the twelve Euler orders.
+//!
+//! A quaternion is an array of its four components, of `f32`, `f64` or registers of either; glam's `Quat` and
+//! `DQuat` become one with `.to_array()` or `.into()` and come back with `from_array`.
+
+mod euler;
+mod quaternion;
+mod slerp;
+
+pub(crate) use euler::check_indices;
+pub use euler::{Axes, EulerColumns, euler_to_quaternions, quaternions_to_euler};
+pub use quaternion::{
+    IDENTITY_F32, IDENTITY_F64, conjugate, dot, exp, log, multiply, multiply_axis, normalize, rotate,
+};
+pub use slerp::{slerp, slerp_frames};
