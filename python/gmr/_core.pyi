@@ -1,5 +1,7 @@
 """The extension module: kernels over plain arrays."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -89,4 +91,132 @@ def format_rows(rows: NDArray[np.float64]) -> tuple[bytes | None, tuple[int, int
 
     Returns:
         The text and None; or None and the row and column of the first value that is not finite.
+    """
+
+# --- rotation ---
+
+_Floats = NDArray[np.float32] | NDArray[np.float64]
+
+def euler_to_quaternions(
+    rows: NDArray[np.float64], columns: NDArray[np.int32], axes: NDArray[np.uint8], out: _Floats
+) -> None:
+    """Local rotations of all slots.
+
+    Args:
+        rows: (F, C) in degrees, C-contiguous.
+        columns: (S, 3) column of each angle; -1: angle 0.
+        axes: (S, 3) axis of each angle in composing order (0: x, 1: y, 2: z): R = R_0 R_1 R_2.
+        out: (F, S, 4) xyzw, unit; written. Their sign follows no rule: q and -q are one rotation.
+
+    Raises:
+        ValueError: when shapes do not fit, or a column or axis does not exist.
+    """
+
+def quaternions_to_euler(quaternions: NDArray[np.float64], axes: NDArray[np.uint8]) -> NDArray[np.float64]:
+    """Angles in degrees, (F, S, 3), of quaternions (F, S, 4) of any length about ``axes`` (S, 3).
+
+    Each frame takes, of all angles that name its rotation, those nearest to the frame before; the first
+    frame's middle angle is between -90 and 90 (0 and 180 where first and last axis are equal).
+
+    Raises:
+        ValueError: when shapes do not fit, or two neighbouring axes are the same.
+    """
+
+def slerp_frames(quaternions: _Floats, times: NDArray[np.float64]) -> Any:
+    """Rotations (G, S, 4) at ``times`` (G,), in frames, between those of (F, S, 4), the short way round.
+
+    Times beyond the ends hold the ends; whole times give the frames themselves; signs never jump.
+
+    Raises:
+        ValueError: when there are times but no frames.
+    """
+
+# --- kinematics ---
+
+class Topology:
+    """Parents and rotation slots of a skeleton, checked once.
+
+    Args:
+        parents: (J,) -1: a root.
+        slots: (J,) the slot that turns the bone ending in each joint; -1: it has its parent's world rotation.
+        slot_count: S.
+
+    Raises:
+        ValueError: an index out of range, a cycle, or a slot shared by bones of different parents.
+    """
+
+    def __init__(self, parents: NDArray[np.int32], slots: NDArray[np.int32], slot_count: int) -> None: ...
+    @property
+    def parents(self) -> NDArray[np.int32]: ...
+    @property
+    def slots(self) -> NDArray[np.int32]: ...
+    @property
+    def slot_parents(self) -> NDArray[np.int32]:
+        """(S,) the slot after which each is applied; -1: the world."""
+
+    @property
+    def world_slots(self) -> NDArray[np.int32]:
+        """(J,) the slot whose world rotation is the bone's; -1: the identity."""
+
+    @property
+    def slot_count(self) -> int: ...
+    @property
+    def joint_count(self) -> int: ...
+
+def forward_kinematics(
+    topology: Topology,
+    rotations: _Floats,
+    translated: NDArray[np.int32],
+    translations: _Floats,
+    offsets: _Floats,
+    joints: NDArray[np.int32] | None = None,
+    rotation_slots: NDArray[np.int32] | None = None,
+    positions_out: _Floats | None = None,
+    rotations_out: _Floats | None = None,
+    threads: int = 1,
+    *,
+    normalize: bool = False,
+) -> None:
+    """World positions and rotations from local quaternions, float32 or float64 throughout.
+
+    Args:
+        topology: J joints, S slots.
+        rotations: (F, S, 4) xyzw, C-contiguous; unit to rounding unless ``normalize``.
+        translated: (T,) joints that ``translations`` is of.
+        translations: (F, T, 3) a root's place in the world, another joint's vector in its slot's frame.
+        offsets: (J, 3) the same for joints that are not translated.
+        joints: (K,) whose positions are asked for; all where left out.
+        rotation_slots: (M,) whose world rotations are asked for, -1: the identity; all where left out.
+        positions_out: (F, K, 3), written; not computed where left out.
+        rotations_out: (F, M, 4), written; not computed where left out.
+        threads: 0 means all cores; the bits are the same for every number.
+        normalize: divide each rotation by its length; one of zeros gives NaN.
+
+    Raises:
+        ValueError: shapes do not fit, an index does not exist, or a slot that turns no bone is asked for.
+        TypeError: when arrays are of different float types.
+    """
+
+def forward_kinematics_euler(
+    topology: Topology,
+    rows: NDArray[np.float64],
+    rotation_columns: NDArray[np.int32],
+    rotation_axes: NDArray[np.uint8],
+    translated: NDArray[np.int32],
+    translation_columns: NDArray[np.int32],
+    adds_offset: bool,
+    offsets: _Floats,
+    joints: NDArray[np.int32] | None = None,
+    rotation_slots: NDArray[np.int32] | None = None,
+    positions_out: _Floats | None = None,
+    rotations_out: _Floats | None = None,
+    threads: int = 1,
+) -> None:
+    """As :func:`forward_kinematics`, from rows (F, C) as files hold them; the outputs' type decides.
+
+    Args:
+        rotation_columns: (S, 3) as in :func:`euler_to_quaternions`.
+        rotation_axes: (S, 3) as in :func:`euler_to_quaternions`.
+        translation_columns: (T, 3) columns of x, y, z of each translated joint; -1: the offset's component.
+        adds_offset: whether these columns are added to the offset (else they replace it).
     """
