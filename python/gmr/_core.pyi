@@ -86,11 +86,11 @@ def parse_rows(
 def count_rows(data: bytes, start: int) -> int:
     """Number of lines from byte ``start`` on that hold more than blanks and NUL bytes."""
 
-def format_rows(rows: NDArray[np.float64]) -> tuple[bytes | None, tuple[int, int] | None]:
+def format_rows(rows: NDArray[np.float64]) -> bytes:
     """Text of (F, C) C-contiguous rows, one line each: the shortest decimals that read back bit-identical.
 
-    Returns:
-        The text and None; or None and the row and column of the first value that is not finite.
+    Raises:
+        ValueError: a value is not finite; its row and column are named from 0.
     """
 
 # --- rotation ---

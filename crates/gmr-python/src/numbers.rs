@@ -1,6 +1,6 @@
 //! Binding of `numbers`.
 
-use gmr_core::numbers::{FormatRows, NotFinite, ParseRows, count_rows};
+use gmr_core::numbers::{FormatRows, ParseRows, count_rows};
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -8,6 +8,9 @@ use pyo3::types::PyBytes;
 
 /// Kind, row and field from 0, line from 1, first byte and the byte after the token.
 type FaultTuple = (&'static str, usize, usize, usize, usize, usize);
+
+/// Rows, the byte after the last whole one, and what ended the reading early.
+type RowsTuple<'py> = (Bound<'py, PyArray2<f64>>, usize, Option<FaultTuple>);
 
 /// Rows of `columns` numbers from `data[start:]`, at most `limit` of them.
 #[pyfunction]
@@ -17,7 +20,7 @@ fn parse_rows<'py>(
     start: usize,
     columns: usize,
     limit: usize,
-) -> PyResult<(Bound<'py, PyArray2<f64>>, usize, Option<FaultTuple>)> {
+) -> PyResult<RowsTuple<'py>> {
     let text = data.as_bytes();
     let job = ParseRows { text, start: start.min(text.len()), columns };
     let room = limit.min(job.most_rows());
@@ -50,20 +53,15 @@ fn count_lines(py: Python<'_>, data: &Bound<'_, PyBytes>, start: usize) -> usize
     py.detach(|| count_rows(text, start))
 }
 
-/// One line for each row, its values as the shortest decimals that read back bit-identical; or the place of the first
-/// value that is not finite.
+/// One line for each row, its values as the shortest decimals that read back bit-identical.
 #[pyfunction]
-fn format_rows<'py>(
-    py: Python<'py>,
-    rows: PyReadonlyArray2<'py, f64>,
-) -> PyResult<(Option<Bound<'py, PyBytes>>, Option<(usize, usize)>)> {
+fn format_rows<'py>(py: Python<'py>, rows: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyBytes>> {
     let columns = rows.shape()[1];
     let values = rows.as_slice()?;
     let mut text = Vec::with_capacity(values.len() * 9);
-    match py.detach(|| FormatRows { values, columns }.run(&mut text)) {
-        Ok(()) => Ok((Some(PyBytes::new(py, &text)), None)),
-        Err(NotFinite { row, field }) => Ok((None, Some((row, field)))),
-    }
+    py.detach(|| FormatRows { values, columns }.run(&mut text))
+        .map_err(|error| PyValueError::new_err(error.to_string()))?;
+    Ok(PyBytes::new(py, &text))
 }
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -4,6 +4,8 @@
 //! proved by one division; the rest is left to the crate `zmij`. Magnitudes from 1e-7 up to 1e21 are written without an
 //! exponent; the sign of zero is kept.
 
+use std::fmt;
+
 /// Rows of values, C order.
 #[derive(Debug, Clone, Copy)]
 pub struct FormatRows<'a> {
@@ -21,6 +23,14 @@ pub struct NotFinite {
     /// Its place in that row, from 0.
     pub field: usize,
 }
+
+impl fmt::Display for NotFinite {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "value {} of row {} is not finite; text has no decimal for it", self.field, self.row)
+    }
+}
+
+impl std::error::Error for NotFinite {}
 
 /// Longest text of one value and the blank after it, rounded up.
 const LONGEST: usize = 64;
