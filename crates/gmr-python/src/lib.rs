@@ -10,6 +10,7 @@ mod matching;
 mod numbers;
 mod rotation;
 mod trial;
+mod watch;
 
 #[pymodule(gil_used = false)]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {

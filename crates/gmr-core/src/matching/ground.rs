@@ -17,6 +17,12 @@ pub struct Placement {
 }
 
 impl Placement {
+    /// At `(x, z)`, looking along `heading`.
+    #[must_use]
+    pub fn new(x: f64, z: f64, heading: f64) -> Self {
+        Self { position: DVec2::new(x, z), heading }
+    }
+
     /// The unit vector that the heading looks along.
     #[must_use]
     pub fn direction(&self) -> DVec2 {

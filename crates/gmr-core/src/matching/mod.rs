@@ -9,5 +9,6 @@ pub mod index;
 pub mod inertialization;
 pub mod normalization;
 pub mod path;
+pub mod request;
 pub mod root;
 pub mod trial;

@@ -97,7 +97,7 @@ pub fn sinc(x: f64) -> f64 {
 /// Turn rates beyond this (rad/s) are taken for degrees written as radians.
 const MAX_TURN_RATE: f64 = 100.0;
 const MAX_SPEED: f64 = 1000.0;
-const MAX_SECONDS: f64 = 1e6;
+const MAX_SECONDS: f64 = 1e5;
 
 fn check(segments: &[Segment]) -> Result<(), PathError> {
     if segments.is_empty() {
