@@ -123,8 +123,10 @@ class Tables:
             offset_sum along_track_mean along_track_rms cross_track_mean cross_track_rms
             inter_clip_per_second intra_clip_per_second forced_end_per_second
             search_cost_pose_mean search_cost_trajectory_mean clip_count seconds
-        coverage: one row a one-second window of the clips: dataset clip frame speed turn_rate_deg | seconds.
-            ``frame`` is the middle of the window, ``seconds`` its time in the file.
+        coverage: one row a one-second window of the clips: dataset clip frame speed turn_rate_deg
+            | seconds forward_speed left_speed weight.
+            ``frame`` is the middle of the window, ``seconds`` its time in the file, ``weight`` the seconds
+            of the dataset that the row stands for (a sum of weights is a duration).
         usage: one row a frame of the dataset, also of those never played (count 0):
             dataset scenario clip frame count | seconds
         transitions: one row a pair of frames jumped between:

@@ -1,0 +1,83 @@
+"""Which clips carry a dataset and which are never played, in words; a clip counts with its mirrored copy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.evaluation.table import Table
+from gmr.evaluation.words import count, duration, listing, percent, some_of
+
+__all__ = ["MIRRORED", "clip_sentences"]
+
+MIRRORED: Final = " (mirrored)"
+"""What the name of a mirrored copy ends in."""
+
+MOST_NAMES: Final = 3
+
+
+@dataclass(frozen=True, slots=True)
+class _Clips:
+    """Clips together with their mirrored copies, the most played first, of equals the longest."""
+
+    names: list[str]
+    seconds: NDArray[np.float64]
+    share: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, clips: Table) -> _Clips:
+        own = np.array(
+            [
+                name.removesuffix(MIRRORED) if copy else name
+                for name, copy in zip(clips["clip"].tolist(), clips["mirrored"].tolist(), strict=True)
+            ],
+            str,
+        )
+        names, which = np.unique(own, return_inverse=True)
+        seconds = np.bincount(which, np.where(clips["mirrored"], 0.0, clips["seconds"]), len(names))
+        share = np.bincount(which, clips["played_share"], len(names))
+        order = np.lexsort((names, -seconds, -share))
+        return cls(
+            names[order].tolist(), *(per_clip[order].astype(np.float64) for per_clip in (seconds, share))
+        )
+
+
+def clip_sentences(clips: Table, usage: Table) -> Iterator[str]:
+    """Say which clips carry the trials, which are never played, and how many of the frames are."""
+    together = _Clips.of(clips)
+    yield _carrying(together)
+    yield _never_played(together)
+    yield f"Of all frames, {percent(float(np.mean(usage['count'] > 0)))} are shown at least once."
+
+
+def _carrying(clips: _Clips) -> str:
+    carrying = int(np.searchsorted(np.cumsum(clips.share), 0.5)) + 1
+    led_by = [
+        f"{name} ({percent(share)})"
+        for name, share in zip(clips.names[:MOST_NAMES], clips.share, strict=False)
+        if share > 0
+    ]
+    if len(clips.names) == 1:
+        return f"All of the time is played from the one clip, {clips.names[0]}."
+    most = "is played from" if carrying > 1 else "and more is played from"
+    led = "led by " if carrying > MOST_NAMES else ""
+    named = led_by if led else led_by[:carrying]
+    return f"Half of the time {most} {carrying} of {count(len(clips.names), 'clip')}: {led}{listing(named)}."
+
+
+def _never_played(clips: _Clips) -> str:
+    unused = clips.share == 0
+    if not unused.any():
+        return "Every clip is played at least once."
+    names = [name for name, never in zip(clips.names, unused, strict=True) if never]
+    seconds = float(clips.seconds[unused].sum())
+    part = percent(seconds / max(float(clips.seconds.sum()), 1e-9))
+    verb = "is" if len(names) == 1 else "are"
+    return (
+        f"{count(len(names), 'clip')} of {len(clips.names)} {verb} never played "
+        f"({duration(seconds)}, {part} of the material): {some_of(names, MOST_NAMES)}."
+    )

@@ -1,0 +1,223 @@
+"""Where on the grid of speeds and turn rates a dataset holds, and where it fails.
+
+A trial *holds* when the character does what it was asked, within stated limits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.evaluation.table import Table
+
+__all__ = [
+    "EITHER",
+    "LEFT",
+    "RIGHT",
+    "STRAIGHT",
+    "Grid",
+    "Limits",
+    "Rectangle",
+    "Region",
+    "failures",
+    "held_rectangle",
+]
+
+STRAIGHT: Final = "straight"
+EITHER: Final = "either way"
+LEFT: Final = "left"
+RIGHT: Final = "right"
+
+FORWARD_SHARE: Final = 0.7
+"""A window goes forward when this much of its speed is along the facing direction (within 45 degrees)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Within which a trial holds, and from which on a movement counts as present in the clips.
+
+    Attributes:
+        offset: mean distance from where the path has the character, metres; when tracking "time" only.
+        speed: mean error of the speed, as a share of the speed asked for.
+        turn_rate_deg: mean error of the turn rate, degrees per second.
+        covered: seconds of the clips in a cell of the grid.
+    """
+
+    offset: float = 0.5
+    speed: float = 0.15
+    turn_rate_deg: float = 10.0
+    covered: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """The trials of constant speed and turn rate, V speeds by W turn rates.
+
+    Attributes:
+        speeds: (V,) m/s, ascending.
+        turn_rates_deg: (W,) degrees/s, ascending, positive to the left.
+        offset, speed_error, turn_rate_error_deg: (V, W) of the trials.
+        held: (V, W) bool, whether the trial holds.
+        seconds: (V, W) how long the clips go forward at about this speed and turn rate: nearer to it than
+            to the next ones of the grid.
+        limits: what "holds" means.
+    """
+
+    speeds: NDArray[np.float64]
+    turn_rates_deg: NDArray[np.float64]
+    offset: NDArray[np.float64]
+    speed_error: NDArray[np.float64]
+    turn_rate_error_deg: NDArray[np.float64]
+    held: NDArray[np.bool_]
+    seconds: NDArray[np.float64]
+    limits: Limits
+
+    @classmethod
+    def of(cls, trials: Table, coverage: Table, limits: Limits) -> Grid:
+        """Lay the constant trials of one dataset out as a grid."""
+        trials = trials.take(trials["scenario"] == "constant")
+        speeds, row = np.unique(trials["speed"], return_inverse=True)
+        turn_rates, column = np.unique(trials["turn_rate_deg"], return_inverse=True)
+
+        def laid_out(name: str) -> NDArray[np.float64]:
+            cells = np.full((len(speeds), len(turn_rates)), np.nan)
+            cells[row, column] = trials[name]
+            return cells
+
+        offset, speed_error = laid_out("offset_mean"), laid_out("speed_error")
+        turn_rate_error = laid_out("turn_rate_error_deg")
+        held = np.abs(speed_error) <= limits.speed * speeds[:, None]
+        held &= np.abs(turn_rate_error) <= limits.turn_rate_deg
+        if not np.any(trials["tracking"] == "velocity"):
+            held &= offset <= limits.offset
+        seconds = _seconds_in_cells(coverage, speeds, turn_rates)
+        return cls(speeds, turn_rates, offset, speed_error, turn_rate_error, held, seconds, limits)
+
+
+def _seconds_in_cells(
+    coverage: Table, speeds: NDArray[np.float64], turn_rates: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    forward = coverage["forward_speed"] >= FORWARD_SHARE * coverage["speed"]
+    seconds, _, _ = np.histogram2d(
+        coverage["speed"][forward],
+        coverage["turn_rate_deg"][forward],
+        bins=(_borders(speeds, 0.25), _borders(turn_rates, 25.0)),
+        weights=coverage["weight"][forward],
+    )
+    return np.asarray(seconds)
+
+
+def _borders(centres: NDArray[np.float64], usual: float) -> NDArray[np.float64]:
+    """Half-way between neighbours, and as far out at both ends."""
+    if len(centres) == 1:
+        return np.array([centres[0] - usual / 2, centres[0] + usual / 2])
+    between = (centres[1:] + centres[:-1]) / 2
+    return np.concatenate([[2 * centres[0] - between[0]], between, [2 * centres[-1] - between[-1]]])
+
+
+@dataclass(frozen=True, slots=True)
+class Rectangle:
+    """A block of the grid without a failure, borders included."""
+
+    speeds: tuple[float, float]
+    turn_rates_deg: tuple[float, float]
+    trials: int
+
+
+def held_rectangle(grid: Grid) -> Rectangle | None:
+    """The block of most trials that all hold; of equals the one that goes straight, then the slowest."""
+    found = max(_rectangles(grid), key=lambda block: _worth(grid, block), default=None)
+    if found is None:
+        return None
+    (v0, v1), (w0, w1) = found
+    return Rectangle(
+        (float(grid.speeds[v0]), float(grid.speeds[v1])),
+        (float(grid.turn_rates_deg[w0]), float(grid.turn_rates_deg[w1])),
+        (v1 - v0 + 1) * (w1 - w0 + 1),
+    )
+
+
+def _worth(grid: Grid, block: tuple[tuple[int, int], tuple[int, int]]) -> tuple[float, ...]:
+    (v0, v1), (w0, w1) = block
+    straight = grid.turn_rates_deg[w0] <= 0 <= grid.turn_rates_deg[w1]
+    return ((v1 - v0 + 1) * (w1 - w0 + 1), straight, -v0, -w0)
+
+
+def _rectangles(grid: Grid) -> Iterator[tuple[tuple[int, int], tuple[int, int]]]:
+    """For every band of the shorter side of the grid, the blocks that hold all through it."""
+    tall = len(grid.speeds) > len(grid.turn_rates_deg)
+    held = grid.held.T if tall else grid.held
+    for first in range(len(held)):
+        for last in range(first, len(held)):
+            for run in _runs(np.all(held[first : last + 1], axis=0)):
+                yield (run, (first, last)) if tall else ((first, last), run)
+
+
+def _runs(flags: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
+    """First and last index of every unbroken run of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
+    for first, end in edges.reshape(-1, 2).tolist():
+        yield first, end - 1
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """Failing trials that are neighbours on the grid.
+
+    Attributes:
+        side: STRAIGHT; EITHER, where left and right both fail; LEFT or RIGHT, where only that side does.
+        cells: (K, 2) index of speed and of turn rate of every failing trial, of EITHER on both sides.
+    """
+
+    side: str
+    cells: NDArray[np.int64]
+
+
+def failures(grid: Grid) -> list[Region]:
+    """All failing trials in regions, the largest first."""
+    failed = ~grid.held
+    mirrored = _mirror_columns(grid.turn_rates_deg)
+    also = np.where(mirrored >= 0, failed[:, mirrored], False)
+    turn = grid.turn_rates_deg
+    sides = {
+        STRAIGHT: failed & (turn == 0),
+        EITHER: failed & also & (turn > 0),
+        LEFT: failed & ~also & (turn > 0),
+        RIGHT: failed & ~also & (turn < 0),
+    }
+    regions = [
+        Region(side, _with_mirrored(cells, mirrored) if side == EITHER else cells)
+        for side, where in sides.items()
+        for cells in _connected(where)
+    ]
+    return sorted(regions, key=lambda region: -len(region.cells))
+
+
+def _mirror_columns(turn_rates: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(W,) index of the opposite turn rate, -1 where the grid has none."""
+    place = np.minimum(np.searchsorted(turn_rates, -turn_rates), len(turn_rates) - 1)
+    return np.where(turn_rates[place] == -turn_rates, place, -1)
+
+
+def _with_mirrored(cells: NDArray[np.int64], mirrored: NDArray[np.int64]) -> NDArray[np.int64]:
+    return np.concatenate([cells, np.stack([cells[:, 0], mirrored[cells[:, 1]]], axis=1)])
+
+
+def _connected(where: NDArray[np.bool_]) -> Iterator[NDArray[np.int64]]:
+    """The cells of every group of True cells that share an edge, in the order of the grid."""
+    left = set(map(tuple, np.argwhere(where).tolist()))
+    while left:
+        waiting = [min(left)]
+        left.remove(waiting[0])
+        group = []
+        while waiting:
+            row, column = waiting.pop()
+            group.append((row, column))
+            around = {(row - 1, column), (row + 1, column), (row, column - 1), (row, column + 1)} & left
+            left -= around
+            waiting.extend(sorted(around))
+        yield np.array(sorted(group), np.int64)

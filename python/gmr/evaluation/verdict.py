@@ -1,0 +1,125 @@
+"""The evaluation in words that someone who plans a motion capture session can act on.
+
+What the dataset holds, where it fails and why, which clips carry it, which are never played, what to capture
+next. Every sentence is computed and carries its figures; the limits it speaks of are stated in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
+
+import numpy as np
+
+from gmr.evaluation.clip_sentences import clip_sentences
+from gmr.evaluation.failure_sentences import capture_sentences, failure_sentences
+from gmr.evaluation.regions import Grid, Limits, failures, held_rectangle
+from gmr.evaluation.result import Verdict
+from gmr.evaluation.table import Table
+from gmr.evaluation.words import count, duration, listing, percent, some_of, span, turning
+
+__all__ = ["verdict"]
+
+STRAIGHT_WITHIN_DEG: Final = 12.5
+"""Turns slower than this, degrees per second, count as going straight: half a step of the paper's grid."""
+
+LOPSIDED: Final = 0.5
+"""One side is called short when it has less than this share of the other side's seconds."""
+
+
+def verdict(
+    trials: Table,
+    coverage: Table,
+    clips: Table,
+    usage: Table,
+    *,
+    notes: Sequence[str] = (),
+    failed: Mapping[str, str] | None = None,
+    limits: Limits | None = None,
+) -> Verdict:
+    """Put an evaluation into words.
+
+    Args:
+        trials, coverage, clips, usage: the tables of the evaluation.
+        notes: what was noticed or assumed on the way, one sentence each.
+        failed: files that could not be used -> why.
+        limits: within which a trial is said to hold.
+    """
+    grid = Grid.of(trials, coverage, limits or Limits())
+    mirrored = bool(clips["mirrored"].any())
+    regions = failures(grid)
+    return Verdict(
+        _headline(grid),
+        (
+            _what_holds(grid, bool(np.any(trials["tracking"] == "time"))),
+            *_straight_sentences(grid),
+            *failure_sentences(grid, regions),
+            *_side_sentences(coverage, mirrored),
+            *clip_sentences(clips, usage),
+            *capture_sentences(grid, regions, mirrored),
+            *notes,
+            *_failed_sentences(failed or {}),
+        ),
+    )
+
+
+def _headline(grid: Grid) -> str:
+    held, trials = int(grid.held.sum()), grid.held.size
+    best = held_rectangle(grid)
+    if best is None:
+        return f"This dataset holds none of {count(trials, 'trial')}: it cannot follow any path of this grid."
+    where = f"{turning(*best.turn_rates_deg)} at {span(*best.speeds, 'm/s')}"
+    if held == trials:
+        return f"This dataset holds every one of {count(trials, 'trial')}: {where}."
+    share = percent(held / trials)
+    return f"This dataset holds {held} of {count(trials, 'trial')} ({share}); it is good for {where}."
+
+
+def _what_holds(grid: Grid, timed: bool) -> str:
+    limits = grid.limits
+    within = [
+        f"its speed within {percent(limits.speed)} of the speed asked for",
+        f"its turn rate within {limits.turn_rate_deg:g} degrees/s",
+    ]
+    if timed:
+        within.insert(0, f"within {limits.offset:g} m of where the planned path has it at that time")
+    return f"A trial holds when the character is, on the average, {listing(within)}."
+
+
+def _straight_sentences(grid: Grid) -> Iterator[str]:
+    column = np.flatnonzero(grid.turn_rates_deg == 0)
+    if not len(column):
+        return
+    holds = grid.held[:, column[0]]
+    if holds.all():
+        yield f"Straight ahead it keeps {span(grid.speeds[0], grid.speeds[-1], 'm/s')} throughout."
+    elif not holds.any():
+        yield "Straight ahead it keeps no speed of the grid."
+    else:
+        kept = listing([f"{speed:g}" for speed in grid.speeds[holds]])
+        lost = listing([f"{speed:g}" for speed in grid.speeds[~holds]])
+        yield f"Straight ahead it keeps {kept} m/s, but not {lost} m/s."
+
+
+def _side_sentences(coverage: Table, mirrored: bool) -> Iterator[str]:
+    turn, weight = coverage["turn_rate_deg"], coverage["weight"]
+    left = float(weight[turn > STRAIGHT_WITHIN_DEG].sum())
+    right = float(weight[turn < -STRAIGHT_WITHIN_DEG].sum())
+    if left + right < 1:
+        yield (
+            f"The clips only go straight: {duration(left + right)} of their {duration(float(weight.sum()))} "
+            f"turn by more than {STRAIGHT_WITHIN_DEG:g} degrees/s."
+        )
+    elif not mirrored and min(left, right) < LOPSIDED * max(left, right):
+        more, less = ("left", "right") if left > right else ("right", "left")
+        yield (
+            f"The clips turn {more} for {duration(max(left, right))} but {less} for only "
+            f"{duration(min(left, right))}; mirrored copies (--mirror) make both sides alike at no cost."
+        )
+
+
+def _failed_sentences(failed: Mapping[str, str]) -> Iterator[str]:
+    if failed:
+        verb = "was" if len(failed) == 1 else "were"
+        files = some_of(list(failed), 5)
+        yield f"{count(len(failed), 'file')} could not be used and {verb} left out: {files}."

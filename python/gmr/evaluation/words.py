@@ -1,0 +1,110 @@
+"""Figures in plain English: lists, plurals, spans, and what a turn rate means to someone who walks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+__all__ = [
+    "circles",
+    "count",
+    "duration",
+    "gait",
+    "listing",
+    "number",
+    "percent",
+    "some_of",
+    "span",
+    "turning",
+]
+
+FASTEST_WALK: Final = 1.75
+SLOWEST_RUN: Final = 2.25
+"""Metres per second: people change from walking to running at about 2 m/s."""
+
+
+def listing(parts: Sequence[str]) -> str:
+    """Join as "a", "a and b", "a, b and c"."""
+    return " and ".join(part for part in (", ".join(parts[:-1]), *parts[-1:]) if part)
+
+
+def some_of(names: Sequence[str], most: int) -> str:
+    """List the first ``most`` names and count the others."""
+    if len(names) <= most:
+        return listing(names)
+    return listing([*names[:most], f"{len(names) - most} more"])
+
+
+def count(number: int, thing: str, things: str | None = None) -> str:
+    """Count things in the right number: "no clips", "1 clip", "2 clips"."""
+    plural = things or f"{thing}s"
+    return (
+        f"{number:,} {thing}"
+        if number == 1
+        else f"{number or 'no'} {plural}"
+        if number < 1000
+        else (f"{number:,} {plural}")
+    )
+
+
+def number(value: float) -> str:
+    """Two digits that matter, and never an exponent: "0.034", "1.2", "12", "340"."""
+    if abs(value) >= 10:
+        return f"{value:.0f}"
+    return f"{float(f'{value:.2g}'):.10f}".rstrip("0").rstrip(".")
+
+
+def percent(share: float) -> str:
+    """A share of 1 in whole per cent, "under 1%" where it is less."""
+    if 0 < share < 0.01:
+        return "under 1%"
+    return f"{100 * share:.0f}%"
+
+
+def duration(seconds: float) -> str:
+    """A time span, in minutes from two of them on."""
+    if seconds >= 120:
+        return f"{number(seconds / 60)} minutes"
+    if round(seconds, 1) in (0, 1):
+        return "1 second" if seconds > 0.5 else "0 seconds"
+    return f"{seconds:.0f} seconds" if seconds >= 9.95 else f"{seconds:.1f} seconds"
+
+
+def span(low: float, high: float, unit: str) -> str:
+    """A range of figures with its unit, or the one figure that it is."""
+    return f"{low:g} {unit}" if low == high else f"{low:g} to {high:g} {unit}"
+
+
+def turning(low_deg: float, high_deg: float) -> str:
+    """In words what turn rates from ``low_deg`` to ``high_deg`` (positive to the left) let a character do."""
+    if low_deg == high_deg == 0:
+        return "going straight"
+    if low_deg > 0:
+        return f"turning left by {span(low_deg, high_deg, 'degrees/s')}"
+    if high_deg < 0:
+        return f"turning right by {span(-high_deg, -low_deg, 'degrees/s')}"
+    if low_deg == -high_deg:
+        return f"going straight and turning up to {high_deg:g} degrees/s either way"
+    sides = [
+        f"{rate:g} degrees/s to the {side}"
+        for rate, side in ((high_deg, "left"), (-low_deg, "right"))
+        if rate
+    ]
+    return f"going straight and turning up to {listing(sides)}"
+
+
+def gait(low: float, high: float) -> str:
+    """What people do at speeds from ``low`` to ``high``, metres per second."""
+    gaits = {
+        "a walk": low <= FASTEST_WALK,
+        "a jog": low < SLOWEST_RUN and high > FASTEST_WALK,
+        "a run": high >= SLOWEST_RUN,
+    }
+    return listing([name for name, reached in gaits.items() if reached])
+
+
+def circles(smallest: float, largest: float) -> str:
+    """The circles to walk, from their radii in metres."""
+    if number(smallest) == number(largest):
+        return f"circles of {number(smallest)} m radius"
+    return f"circles of {number(smallest)} to {number(largest)} m radius"

@@ -1,0 +1,186 @@
+"""The verdict on made-up datasets of which everything is known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from gmr.evaluation.coverage import coverage_table
+from gmr.evaluation.result import Verdict
+from gmr.evaluation.scenario import constant_trials
+from gmr.evaluation.transitions import transitions_of
+from gmr.evaluation.trials import trials_table
+from gmr.evaluation.usage import clips_table, play_counts, usage_table
+from gmr.evaluation.verdict import verdict
+from locomotion import Arc, Gait, frames_of, walked
+
+GRID = constant_trials((1.0, 1.5, 2.0, 2.5, 3.0), (-100.0, -50.0, 0.0, 50.0, 100.0))
+EVERYTHING = {
+    f"{speed:g}_{turn:g}.bvh": Arc(4.0, speed, turn)
+    for speed in (1.0, 1.5, 2.0, 2.5, 3.0)
+    for turn in (-100.0, -50.0, 0.0, 50.0, 100.0)
+}
+
+
+def judged(
+    clips: dict[str, Arc],
+    answer: Callable[[float, float], Gait] = Gait,
+    tracking: str = "time",
+    **said: object,
+) -> Verdict:
+    frames = frames_of(clips)
+    log = walked(GRID, frames, answer)
+    counts = play_counts(log, frames)
+    return verdict(
+        trials_table("set", GRID, tracking, log, transitions_of(log, frames), frames),
+        coverage_table("set", frames),
+        clips_table("set", counts, frames),
+        usage_table("set", "constant", counts, frames),
+        **said,  # type: ignore[arg-type]
+    )
+
+
+def test_a_perfect_dataset_is_told_so() -> None:
+    said = judged(EVERYTHING)
+    assert said.headline == (
+        "This dataset holds every one of 25 trials: "
+        "going straight and turning up to 100 degrees/s either way at 1 to 3 m/s."
+    )
+    assert "Straight ahead it keeps 1 to 3 m/s throughout." in said.sentences
+    assert "Nothing on this grid needs another capture." in said.sentences
+    assert "fails" not in str(said)
+
+
+def test_a_dataset_of_straight_clips_is_told_so() -> None:
+    straight = {name: arc for name, arc in EVERYTHING.items() if not arc.turn_rate_deg}
+    said = judged(straight, lambda speed, turn: Gait(speed, 0.0))
+    assert (
+        said.headline
+        == "This dataset holds 5 of 25 trials (20%); it is good for going straight at 1 to 3 m/s."
+    )
+    assert (
+        "The clips only go straight: 0 seconds of their 20 seconds turn by more than 12.5 degrees/s."
+        in said.sentences
+    )
+    failure = next(sentence for sentence in said.sentences if sentence.startswith("It fails when"))
+    assert failure.startswith(
+        "It fails when turning either way by 50 to 100 degrees/s at 1 to 3 m/s (20 trials): "
+        "no clip moves like that, and the character turns 75 degrees/s too slowly"
+    )
+    assert (
+        "Capture next: left and right turns at 1 to 3 m/s "
+        "(a walk, a jog and a run, on circles of 0.57 to 3.4 m radius)." in said.sentences
+    )
+    assert "One side of the turns is enough when mirrored copies are used (--mirror)." in said.sentences
+    assert "Every clip is played at least once." in said.sentences
+
+
+def test_a_hole_at_one_speed_is_named() -> None:
+    holed = {name: arc for name, arc in EVERYTHING.items() if arc.speed != 2.0}
+    said = judged(holed, lambda speed, turn: Gait(1.5 if speed == 2.0 else speed, turn))
+    assert "Straight ahead it keeps 1, 1.5, 2.5 and 3 m/s, but not 2 m/s." in said.sentences
+    straight = next(sentence for sentence in said.sentences if "going straight at 2 m/s" in sentence)
+    assert "(1 trial): no clip moves like that, and the character goes 0.5 m/s too slowly" in straight
+    assert any(
+        sentence.startswith("Capture next: left and right turns at 2 m/s (a jog,")
+        and sentence.endswith("; straight lines at 2 m/s (a jog).")
+        for sentence in said.sentences
+    )
+
+
+def test_what_only_one_side_lacks_is_named_with_its_side() -> None:
+    left_only = {name: arc for name, arc in EVERYTHING.items() if arc.turn_rate_deg >= 0}
+    said = judged(left_only, lambda speed, turn: Gait(speed, max(turn, 0.0)))
+    assert said.headline.endswith(
+        "it is good for going straight and turning up to 100 degrees/s to the left at 1 to 3 m/s."
+    )
+    assert (
+        "The clips turn left for 40 seconds but right for only 0 seconds; "
+        "mirrored copies (--mirror) make both sides alike at no cost." in said.sentences
+    )
+    assert any("turning right, though not left, by 50 to 100 degrees/s" in text for text in said.sentences)
+    assert any("Capture next: right turns at 1 to 3 m/s" in text for text in said.sentences)
+
+
+def test_walking_backwards_does_not_count_as_covering_a_speed() -> None:
+    clips = {name: arc._replace(backwards=arc.speed == 1.0) for name, arc in EVERYTHING.items()}
+    said = judged(clips, lambda speed, turn: Gait(max(speed, 1.5), turn))
+    assert any("at 1 m/s" in text and "no clip moves like that" in text for text in said.sentences)
+
+
+def test_failing_where_there_are_clips_does_not_ask_for_more_of_them() -> None:
+    said = judged(EVERYTHING, lambda speed, turn: Gait(min(speed, 2.0), turn))
+    assert not any(sentence.startswith("Capture next") for sentence in said.sentences)
+    assert any(
+        sentence.startswith("Every movement that fails is in the clips") for sentence in said.sentences
+    )
+    failure = next(sentence for sentence in said.sentences if sentence.startswith("It fails when"))
+    assert "32 seconds of the clips move like that" in failure
+    assert "goes 0.75 m/s too slowly" in failure
+
+
+def test_a_dataset_that_holds_nothing_is_told_so() -> None:
+    said = judged({"still.bvh": Arc(20.0, 0.0)}, lambda speed, turn: Gait(0.0, 0.0))
+    assert said.headline == "This dataset holds none of 25 trials: it cannot follow any path of this grid."
+    assert "Straight ahead it keeps no speed of the grid." in said.sentences
+    assert "All of the time is played from the one clip, still.bvh." in said.sentences
+
+
+def test_straying_from_the_path_fails_only_where_the_path_is_tracked() -> None:
+    def slow(speed: float, turn: float) -> Gait:
+        return Gait(0.9 * speed, turn)
+
+    timed = judged(EVERYTHING, slow)
+    assert "keeps its speed" not in timed.headline
+    assert any("(mean distance from the path" in sentence for sentence in timed.sentences)
+    free = judged(EVERYTHING, slow, tracking="velocity")
+    assert free.headline.startswith("This dataset holds every one of 25 trials")
+    assert not any("of where the planned path has it" in sentence for sentence in free.sentences)
+
+
+def test_clips_that_carry_and_clips_never_played_are_named_with_their_mirrored_copies() -> None:
+    clips = {
+        "long.bvh": Arc(30.0, 1.0),
+        "short.bvh": Arc(5.0, 1.0),
+        "long.bvh (mirrored)": Arc(30.0, 1.0, mirrored=True),
+        "short.bvh (mirrored)": Arc(5.0, 1.0, mirrored=True),
+        "spare.bvh": Arc(90.0, 1.0, mirrored=False),
+        "spare.bvh (mirrored)": Arc(90.0, 1.0, mirrored=True),
+    }
+    said = judged(clips)
+    assert "Half of the time and more is played from 1 of 3 clips: long.bvh (83%)." in said.sentences
+    never = "1 clip of 3 is never played (90 seconds, 72% of the material): spare.bvh."
+    assert never in said.sentences
+
+
+def test_many_unused_clips_are_counted_and_the_longest_named() -> None:
+    used = {"used.bvh": Arc(40.0, 1.0)}
+    unused = {f"unused_{index}.bvh": Arc(2.0 + index, 1.0) for index in range(5)}
+    said = judged(used | unused)
+    assert (
+        "5 clips of 6 are never played (20 seconds, 33% of the material): "
+        "unused_4.bvh, unused_3.bvh, unused_2.bvh and 2 more." in said.sentences
+    )
+
+
+def test_notes_and_broken_files_come_last() -> None:
+    said = judged(
+        EVERYTHING, notes=("The files are taken to be in centimetres.",), failed={"bad.bvh": "empty"}
+    )
+    assert said.sentences[-2:] == (
+        "The files are taken to be in centimetres.",
+        "1 file could not be used and was left out: bad.bvh.",
+    )
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_same_tables_give_the_same_words(seed: int) -> None:
+    noise = np.random.default_rng(seed).normal(size=1000)
+
+    def erratic(speed: float, turn: float) -> Gait:
+        which = int(speed * 10 + turn) % 1000
+        return Gait(abs(speed + noise[which]), turn + 20 * noise[which])
+
+    assert judged(EVERYTHING, erratic) == judged(EVERYTHING, erratic)
