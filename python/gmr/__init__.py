@@ -17,6 +17,8 @@ from gmr.errors import (
 
 if TYPE_CHECKING:
     from gmr.channels import ChannelLayout
+    from gmr.concatenate import concatenate
+    from gmr.formats import read, read_folder, write
     from gmr.motion import Motion
     from gmr.skeleton import Skeleton
 
@@ -31,6 +33,10 @@ __all__ = [
     "Skeleton",
     "SkeletonError",
     "__version__",
+    "concatenate",
+    "read",
+    "read_folder",
+    "write",
 ]
 
 # What needs NumPy is imported when first used, so that `gmr --help` answers at once.
@@ -38,6 +44,10 @@ _HOMES = {
     "ChannelLayout": "gmr.channels",
     "Motion": "gmr.motion",
     "Skeleton": "gmr.skeleton",
+    "concatenate": "gmr.concatenate",
+    "read": "gmr.formats",
+    "read_folder": "gmr.formats",
+    "write": "gmr.formats",
 }
 _MODULES: frozenset[str] = frozenset()
 

@@ -8,7 +8,7 @@ does).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -156,12 +156,31 @@ class ChannelLayout:
                     columns[row, POSITIONS[name.lower()]] = self.starts[joint] + k
         return read_only(columns)
 
+    def completed(self) -> ChannelLayout:
+        """The layout with three rotations in each joint whose channels cannot write every rotation it may
+        come to.
+
+        One channel is left alone: a hinge stays a hinge when its motion is resampled.
+        """
+        return replace(self, names=tuple(_completed(channels) for channels in self.names))
+
     def fits(self, skeleton: Skeleton) -> bool:
         """Whether the slots that this layout numbers are the ones that turn the skeleton's bones."""
         if self.parents != tuple(skeleton.parents.tolist()) or skeleton.slot_count != len(self.slot_joints):
             return False
         above = np.array(self.parents, np.int32)
         return np.array_equal(skeleton.slots, np.where(above >= 0, self.owned_slots[above], -1))
+
+
+def _completed(channels: tuple[str, ...]) -> tuple[str, ...]:
+    """The channels of one joint, with rotations added or exchanged so that they can write any rotation."""
+    turns = [name for name in channels if name.lower() in ROTATIONS]
+    axes = [ROTATIONS[name.lower()] for name in turns]
+    if len(axes) < 2:
+        return channels
+    if axes[0] == axes[1] or (len(axes) == 3 and axes[1] == axes[2]):
+        return (*(name for name in channels if name not in turns), *_STANDARD_ROTATIONS)
+    return channels if len(axes) == 3 else (*channels, f"{'XYZ'[3 - axes[0] - axes[1]]}rotation")
 
 
 def _check_joint(joint: int, channels: tuple[str, ...]) -> None:

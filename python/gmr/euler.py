@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,7 +14,7 @@ from gmr.errors import SkeletonError
 from gmr.frames import Pose, Rows
 from gmr.skeleton import Skeleton
 
-__all__ = ["pose_from_rows", "rows_from_pose"]
+__all__ = ["fewer_angles", "pose_from_rows", "rows_from_pose", "translations_of_rows"]
 
 
 def pose_from_rows(skeleton: Skeleton, rows: Rows) -> Pose:
@@ -20,7 +22,7 @@ def pose_from_rows(skeleton: Skeleton, rows: Rows) -> Pose:
     layout = rows.layout
     rotations = np.empty((len(rows), len(layout.slot_joints), 4))
     _core.euler_to_quaternions(rows.values, layout.rotation_columns, layout.rotation_axes, rotations)
-    translations = _translations(skeleton, rows)
+    translations = translations_of_rows(skeleton, rows)
     return Pose(read_only(rotations), layout.translated, read_only(translations), layout)
 
 
@@ -42,7 +44,7 @@ def rows_from_pose(skeleton: Skeleton, pose: Pose) -> Rows:
     return Rows(read_only(values), layout)
 
 
-def _translations(skeleton: Skeleton, rows: Rows) -> NDArray[np.float64]:
+def translations_of_rows(skeleton: Skeleton, rows: Rows) -> NDArray[np.float64]:
     """(F, T, 3): the offset, with the position channels in its place or added to it."""
     layout = rows.layout
     columns = layout.translation_columns
@@ -56,21 +58,52 @@ def _translations(skeleton: Skeleton, rows: Rows) -> NDArray[np.float64]:
 
 def _write_angles(values: NDArray[np.float64], layout: ChannelLayout, rotations: NDArray[np.float64]) -> None:
     """Writes the angles in degrees into the columns that the layout has for them."""
-    columns = layout.rotation_columns
-    if not len(columns) or not len(values):
+    columns, axes = layout.rotation_columns, layout.rotation_axes
+    if not len(values):
         return
-    angles = _core.quaternions_to_euler(rotations, _whole_orders(layout))
-    given = columns >= 0
-    values[:, columns[given]] = angles[:, given]
+    whole = np.flatnonzero((columns >= 0).all(axis=1) & (axes[:, :-1] != axes[:, 1:]).all(axis=1))
+    if len(whole):
+        chosen = rotations if len(whole) == len(columns) else np.ascontiguousarray(rotations[:, whole])
+        angles = _core.quaternions_to_euler(chosen, np.ascontiguousarray(axes[whole]))
+        values[:, columns[whole]] = angles
+    for slot in np.setdiff1d(np.arange(len(columns)), whole).tolist():
+        steps = [
+            k for k in range(3) if columns[slot, k] >= 0 and (k == 0 or axes[slot, k] != axes[slot, k - 1])
+        ]
+        if steps:
+            found = fewer_angles(rotations[:, slot], [int(axes[slot, k]) for k in steps])
+            values[:, columns[slot, steps]] = np.degrees(found)
 
 
-def _whole_orders(layout: ChannelLayout) -> NDArray[np.uint8]:
-    """(S, 3) axes in which every slot has three steps: missing ones come last and stay 0."""
-    axes = layout.rotation_axes.copy()
-    for slot, count in enumerate((layout.rotation_columns >= 0).sum(axis=1).tolist()):
-        for step in range(count, 3):
-            axes[slot, step] = next(axis for axis in (0, 1, 2) if axis not in axes[slot, :step])
-    return axes
+def fewer_angles(rotations: NDArray[np.float64], axes: Sequence[int]) -> NDArray[np.float64]:
+    """Angles of rotations about one axis, or about two different ones in this order.
+
+    ``q = q_a q_b`` has the components ``c_a c_b`` (w), ``s_a c_b`` (a), ``c_a s_b`` (b) and ``± s_a s_b``
+    (the third) of the sines and cosines of half the angles; the larger of the two pairs that give the first
+    angle is used.
+
+    Args:
+        rotations: (F, 4) xyzw.
+        axes: one or two of 0, 1, 2.
+
+    Returns:
+        (F, len(axes)) radians, from -pi to pi.
+    """
+    w, a = rotations[:, 3], rotations[:, axes[0]]
+    if len(axes) == 1:
+        return _wrapped(2 * np.arctan2(a, w))[:, None]
+    sign = 1.0 if (axes[1] - axes[0]) % 3 == 1 else -1.0
+    b, third = rotations[:, axes[1]], sign * rotations[:, 3 - axes[0] - axes[1]]
+    by_w = w * w + a * a >= b * b + third * third
+    half = np.arctan2(np.where(by_w, a, third), np.where(by_w, w, b))
+    cosine, sine = np.cos(half), np.sin(half)
+    other = np.arctan2(b * cosine + third * sine, w * cosine + a * sine)
+    return _wrapped(2 * np.stack([half, other], axis=1))
+
+
+def _wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same angles within a half turn of 0."""
+    return angles - 2 * np.pi * np.round(angles / (2 * np.pi))
 
 
 def _write_translations(

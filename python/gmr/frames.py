@@ -97,4 +97,5 @@ def _frames_of(array: NDArray[Any], what: str, shape: tuple[int | None, ...]) ->
 
 def _owned(kind: type[Rows] | type[Pose], *fields: Any) -> Rows | Pose:
     """Frames from unpickled arrays, which nobody else holds and so need no copy."""
-    return kind(*(read_only(field) if isinstance(field, np.ndarray) else field for field in fields))
+    held: list[Any] = [read_only(field) if isinstance(field, np.ndarray) else field for field in fields]
+    return kind(*held)

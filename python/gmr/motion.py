@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 __all__ = ["Motion"]
 
 Joint = str | int | np.integer[Any]
-FloatArray = NDArray[np.float32] | NDArray[np.float64]
+FloatArray = NDArray[Any]
+"""float32 or float64, as asked."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

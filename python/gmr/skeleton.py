@@ -78,6 +78,7 @@ class Skeleton:
                     f"{field} has the shape {array.shape} where {shape} is needed: one entry a joint"
                 )
             object.__setattr__(self, field, array)
+        self.topology  # noqa: B018  what is no forest is refused here, not where it is first used
 
     @classmethod
     def post_rotation(

@@ -5,10 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from gmr.arrays import read_only
 from gmr.errors import GmrError
+from gmr.frames import Pose, Rows
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
+    from gmr.skeleton import Skeleton
 
 __all__ = ["UNITS", "metres_per_unit", "to_unit"]
 
@@ -49,8 +54,6 @@ def to_unit(motion: Motion, unit: float | str) -> Motion:
     Raises:
         GmrError: the motion does not say in what unit it is.
     """
-    from gmr.scaling import scaled
-
     wanted = metres_per_unit(unit)
     if motion.unit is None:
         raise GmrError(
@@ -59,4 +62,22 @@ def to_unit(motion: Motion, unit: float | str) -> Motion:
         )
     if wanted == motion.unit:
         return motion
-    return replace(scaled(motion, motion.unit / wanted), unit=wanted)
+    return replace(_scaled(motion, motion.unit / wanted), unit=wanted)
+
+
+def _scaled(motion: Motion, factor: float) -> Motion:
+    """The motion with every length multiplied by ``factor``."""
+    source = motion.source
+    if isinstance(source, Rows):
+        lengths = np.where(source.layout.column_turns, 1.0, factor)
+        frames: Rows | Pose = replace(source, values=read_only(source.values * lengths))
+    else:
+        frames = replace(source, translations=read_only(source.translations * factor))
+    dropped = (
+        None if motion.dropped is None else motion.dropped.on(lambda joints: _scaled_offsets(joints, factor))
+    )
+    return replace(motion, skeleton=_scaled_offsets(motion.skeleton, factor), source=frames, dropped=dropped)
+
+
+def _scaled_offsets(skeleton: Skeleton, factor: float) -> Skeleton:
+    return replace(skeleton, offsets=read_only(skeleton.offsets * factor))

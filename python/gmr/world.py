@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["motion_positions", "motion_rotations"]
 
-FloatArray = NDArray[np.float32] | NDArray[np.float64]
+FloatArray = NDArray[Any]
+"""float32 or float64, as asked."""
 
 _THREADING_PAYS = 1_000_000
 """Joint positions above which sharing the work among threads wins over starting them."""

@@ -1,1 +1,10 @@
-"""formats."""
+"""The door: files, folders, bytes and streams become motions, and motions become files."""
+
+from __future__ import annotations
+
+from gmr.formats.folder import Takes, motion_files, read_folder
+from gmr.formats.reading import read
+from gmr.formats.registry import FORMATS, Format
+from gmr.formats.writing import write
+
+__all__ = ["FORMATS", "Format", "Takes", "motion_files", "read", "read_folder", "write"]

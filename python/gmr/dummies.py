@@ -1,0 +1,176 @@
+"""Dummy joints: joints of zero length, which a post-rotation file needs so that siblings can turn
+independently.
+
+The removal composes two rotations, so every joint that stays keeps its place: a dummy d with parent p and
+children c goes by ``R''_c = R'_d R'_c``, c hanging on p with its own offset. Slots keep their numbers; the
+slot of the dummy's own bone stays in the motion even where no bone uses it any more, and so the removal can
+be undone.
+Source: the General Motion Representation, dummy joints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.arrays import read_only
+from gmr.channels import ChannelLayout
+from gmr.euler import translations_of_rows
+from gmr.frames import Pose, Rows
+from gmr.quaternions import conjugate, multiply
+from gmr.skeleton import End, Skeleton
+
+if TYPE_CHECKING:
+    from gmr.motion import Motion
+
+__all__ = ["Dropped", "drop_dummies", "find_dummies", "restore_dummies"]
+
+
+@dataclass(frozen=True)
+class Dropped:
+    """What a motion was before its dummies were dropped, as far as it cannot be told from what is left.
+
+    Args:
+        skeleton: with the dummies, in the motion's own unit and on its own side.
+        layout: its channels.
+        translated: the joints of it that had a translation per frame.
+        before: what had been dropped earlier.
+    """
+
+    skeleton: Skeleton
+    layout: ChannelLayout | None
+    translated: tuple[int, ...]
+    dummies: tuple[int, ...]
+    before: Dropped | None
+
+    def on(self, change: Callable[[Skeleton], Skeleton]) -> Dropped:
+        """The same record for a motion whose skeleton was changed."""
+        before = None if self.before is None else self.before.on(change)
+        return replace(self, skeleton=change(self.skeleton), before=before)
+
+
+def find_dummies(motion: Motion) -> tuple[int, ...]:
+    """Indices of the dummy joints: neither root nor end, with children, of zero length in every frame."""
+    skeleton = motion.skeleton
+    lengths = np.abs(skeleton.offsets).max(axis=1)
+    moving = [joint for joint in motion.translated.tolist() if skeleton.parents[joint] >= 0]
+    if moving and motion.frame_count:
+        source = motion.source
+        translations = (
+            translations_of_rows(skeleton, source) if isinstance(source, Rows) else source.translations
+        )
+        lengths[motion.translated] = np.abs(translations).max(axis=(0, 2))
+    return tuple(
+        joint
+        for joint, children in enumerate(skeleton.children)
+        if children
+        and lengths[joint] == 0
+        and skeleton.ends[joint] == End.JOINT
+        and skeleton.parents[joint] >= 0
+    )
+
+
+def drop_dummies(motion: Motion) -> Motion:
+    """The motion without its dummy joints; all that stay keep their world positions and bone rotations.
+
+    Returns:
+        A motion that remembers what was removed (:func:`restore_dummies`); the same motion where it has no
+        dummies.
+    """
+    dummies = find_dummies(motion)
+    if not dummies:
+        return motion
+    skeleton, pose = motion.skeleton, motion.pose
+    rotations, links = pose.rotations.copy(), skeleton.links.copy()
+    parents, slots = skeleton.parents.copy(), skeleton.slots.copy()
+    for dummy in _parents_first(skeleton, dummies):
+        above, children = slots[dummy], skeleton.children[dummy]
+        for slot in sorted({int(skeleton.slots[child]) for child in children} - {-1}):
+            if above >= 0:
+                rotations[:, slot] = multiply(rotations[:, above], rotations[:, slot])
+        for child in children:
+            parents[child] = parents[dummy]
+            slots[child] = slots[child] if slots[child] >= 0 else above
+        links[links == dummy] = parents[dummy]
+    kept = np.setdiff1d(np.arange(skeleton.joint_count), dummies)
+    moved = np.isin(pose.translated, kept)
+    return replace(
+        motion,
+        skeleton=_subset(skeleton, kept, parents, slots, links),
+        source=Pose(
+            read_only(rotations),
+            _renumbering(skeleton.joint_count, kept)[pose.translated[moved]],
+            read_only(np.ascontiguousarray(pose.translations[:, moved])),
+        ),
+        dropped=Dropped(skeleton, pose.layout, tuple(pose.translated.tolist()), dummies, motion.dropped),
+    )
+
+
+def restore_dummies(motion: Motion) -> Motion:
+    """The motion with the joints that :func:`drop_dummies` removed, where they were, turning as they did.
+
+    Returns:
+        A motion on the skeleton that it had before; the same motion where nothing was dropped.
+    """
+    record = motion.dropped
+    if record is None:
+        return motion
+    skeleton, pose = record.skeleton, motion.pose
+    rotations = pose.rotations.copy()
+    for dummy in reversed(_parents_first(skeleton, record.dummies)):
+        above = skeleton.slots[dummy]
+        for slot in sorted({int(skeleton.slots[child]) for child in skeleton.children[dummy]} - {-1}):
+            if above >= 0:
+                rotations[:, slot] = multiply(conjugate(rotations[:, above]), rotations[:, slot])
+    kept = np.setdiff1d(np.arange(skeleton.joint_count), record.dummies)
+    translations = np.zeros((motion.frame_count, len(record.translated), 3))
+    places = {joint: k for k, joint in enumerate(record.translated)}
+    held = [places[joint] for joint in kept[pose.translated].tolist()]
+    translations[:, held] = pose.translations
+    source = Pose(
+        read_only(rotations), np.array(record.translated, np.int32), read_only(translations), record.layout
+    )
+    return replace(motion, skeleton=skeleton, source=source, dropped=record.before)
+
+
+def _parents_first(skeleton: Skeleton, joints: tuple[int, ...]) -> list[int]:
+    """The joints so ordered that none comes before one that it hangs below."""
+    return sorted(joints, key=lambda joint: (_depth(skeleton, joint), joint))
+
+
+def _depth(skeleton: Skeleton, joint: int) -> int:
+    depth = 0
+    while (joint := int(skeleton.parents[joint])) >= 0:
+        depth += 1
+    return depth
+
+
+def _renumbering(count: int, kept: NDArray[np.intp]) -> NDArray[np.int32]:
+    """(count + 1,) the new index of each old joint, -1 for those not kept and, as the last entry, for -1."""
+    found = np.full(count + 1, -1, np.int32)
+    found[kept] = np.arange(len(kept))
+    return found
+
+
+def _subset(
+    skeleton: Skeleton,
+    kept: NDArray[np.intp],
+    parents: NDArray[np.int32],
+    slots: NDArray[np.int32],
+    links: NDArray[np.int32],
+) -> Skeleton:
+    """The kept joints, hanging and turning as ``parents``, ``slots`` and ``links`` (in old numbers) say."""
+    renumbered = _renumbering(skeleton.joint_count, kept)
+    return Skeleton(
+        names=tuple(skeleton.names[joint] for joint in kept),
+        parents=renumbered[parents[kept]],
+        offsets=skeleton.offsets[kept],
+        slots=slots[kept],
+        slot_count=skeleton.slot_count,
+        links=renumbered[links[kept]],
+        ends=skeleton.ends[kept],
+    )

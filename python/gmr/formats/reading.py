@@ -1,0 +1,91 @@
+"""One file, one stream or some bytes become a motion."""
+
+from __future__ import annotations
+
+import difflib
+import os
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Literal
+
+from gmr.errors import FormatError
+from gmr.formats.registry import format_of_file, format_of_text, named_format
+
+if TYPE_CHECKING:
+    from gmr.motion import Motion
+
+__all__ = ["Positions", "Source", "read"]
+
+Positions = Literal["replace", "add"]
+Source = str | os.PathLike[str] | bytes | bytearray | memoryview | IO[str] | IO[bytes]
+
+
+def read(
+    source: Source, format: str | None = None, *, positions: Positions = "replace", strict: bool = False
+) -> Motion:
+    """Read a motion.
+
+    Args:
+        source: a path; or the contents of a file as bytes; or an open file, text or binary.
+        format: "bvh"; told by the suffix of a path, and by the first bytes of anything else, where left out.
+        positions: whether position channels "replace" a joint's OFFSET (as in Blender) or "add" to it.
+        strict: refuse what is read with a warning otherwise, such as fewer rows than the file declares.
+
+    Returns:
+        The motion as the file has it, all joints kept; ``unit`` is None where the format names none.
+
+    Raises:
+        FormatError: the file is missing, empty or not what it claims to be; says where and how to mend it.
+
+    Warns:
+        FormatWarning: something odd was read all the same.
+    """
+    if positions not in ("replace", "add"):
+        raise ValueError(f"positions='{positions}' is not known; use 'replace' or 'add'")
+    chosen = None if format is None else named_format(format)
+    name, data = _contents(source, any_suffix=chosen is not None)
+    if not data:
+        raise FormatError("the file is empty, it holds no motion; export it again", file=name)
+    if chosen is None:
+        is_path = isinstance(source, str | os.PathLike)
+        chosen = format_of_file(name or "") if is_path else format_of_text(data, name)
+    return chosen.read(data, name=name, positions=positions, strict=strict)
+
+
+def _contents(source: Source, any_suffix: bool) -> tuple[str | None, bytes]:
+    """What the source is called, and all its bytes."""
+    if isinstance(source, bytes | bytearray | memoryview):
+        return None, bytes(source)
+    if isinstance(source, str | os.PathLike):
+        if isinstance(source, str) and "\n" in source:
+            raise FormatError("this is the text of a file where its path is needed; encode it: text.encode()")
+        path = Path(source)
+        if not any_suffix and path.is_file():
+            format_of_file(str(path))
+        return str(path), _file_contents(path)
+    data = source.read()
+    name = getattr(source, "name", None)
+    return name if isinstance(name, str) else None, data.encode() if isinstance(data, str) else data
+
+
+def _file_contents(path: Path) -> bytes:
+    """All bytes of a file, or a sentence why there are none."""
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        raise FormatError(f"there is no such file{_nearest(path)}", file=str(path)) from None
+    except IsADirectoryError:
+        raise FormatError(
+            "this is a folder; read all its files with gmr.read_folder", file=str(path)
+        ) from None
+    except OSError as error:
+        raise FormatError(f"the file cannot be read: {error.strerror}", file=str(path)) from error
+
+
+def _nearest(path: Path) -> str:
+    """The files beside that are called nearly the same, as the end of a sentence."""
+    try:
+        beside = [entry.name for entry in os.scandir(path.parent)]
+    except OSError:
+        return f", and no folder '{path.parent}' either"
+    near = difflib.get_close_matches(path.name, beside, n=3)
+    return f"; did you mean {' or '.join(near)}?" if near else f" in '{path.parent}'"

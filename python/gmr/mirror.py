@@ -1,0 +1,153 @@
+"""The mirror image of a motion across the plane x = 0, left and right exchanged."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.arrays import read_only
+from gmr.channels import ChannelLayout
+from gmr.dummies import Dropped
+from gmr.errors import SkeletonError
+from gmr.frames import Pose, Rows
+from gmr.sides import pair_joints
+from gmr.skeleton import Skeleton
+
+if TYPE_CHECKING:
+    from gmr.motion import Motion
+
+__all__ = ["mirror"]
+
+_POINT = np.array([-1.0, 1.0, 1.0])
+_QUATERNION = np.array([1.0, -1.0, -1.0, 1.0])
+
+
+def mirror(motion: Motion, pairs: Mapping[str, str] | Iterable[tuple[str, str]] | None = None) -> Motion:
+    """The mirror image: with ``pair`` the image of each joint, positions obey ``P'[pair] = P * (-1, 1, 1)``.
+
+    Every number is moved and its sign kept or flipped, nothing else, so mirroring twice gives back every bit.
+    The offsets are mirrored too: a skeleton that leans to its left comes out leaning to its right.
+
+    Args:
+        motion: any.
+        pairs: names of joints of the two sides, where their names do not tell (Left/Right, L/R, _l/_r,
+            lfoot/rfoot).
+
+    Raises:
+        SkeletonError: a joint of one side has no partner on the other.
+    """
+    pairs = list(pairs.items()) if isinstance(pairs, Mapping) else pairs
+    if isinstance(motion.source, Rows):
+        return _mirrored_rows(motion, motion.source, pair_joints(motion.skeleton, pairs))
+    return _mirrored_pose(motion, motion.source, pairs)
+
+
+def _mirrored_rows(motion: Motion, rows: Rows, pair: NDArray[np.int32]) -> Motion:
+    """Columns of the two sides exchanged: x positions and the angles about y and z change sign."""
+    layout = rows.layout
+    channels = [np.arange(layout.starts[image], layout.starts[image + 1]) for image in pair]
+    taken = np.concatenate(channels) if channels else np.empty(0, np.intp)
+    flipped = (layout.column_axes == 0) != layout.column_turns
+    values = rows.values[:, taken] * np.where(flipped, -1.0, 1.0)[taken]
+    mirrored = _mirrored_layout(layout, pair)
+    skeleton = Skeleton.post_rotation(
+        motion.skeleton.names,
+        motion.skeleton.parents,
+        motion.skeleton.offsets[pair] * _POINT,
+        ends=motion.skeleton.ends[pair],
+        turning=np.flatnonzero(np.diff(mirrored.starts)).tolist(),
+    )
+    return replace(motion, skeleton=skeleton, source=Rows(read_only(values), mirrored))
+
+
+def _mirrored_pose(motion: Motion, pose: Pose, pairs: Iterable[tuple[str, str]] | None) -> Motion:
+    """Slots and translations of the two sides exchanged."""
+    levels = _levels(motion, pairs)
+    skeleton, pair = levels[0]
+    slots = _paired_slots(levels, pose.layout if motion.dropped is None else motion.dropped.layout)
+    source = Pose(
+        read_only(pose.rotations[:, slots] * _QUATERNION),
+        pair[pose.translated],
+        read_only(pose.translations * _POINT),
+        None if pose.layout is None else _mirrored_layout(pose.layout, pair),
+    )
+    dropped = None if motion.dropped is None else _mirrored_record(motion.dropped, levels[1:])
+    return replace(motion, skeleton=_mirrored_skeleton(skeleton, pair), source=source, dropped=dropped)
+
+
+def _levels(
+    motion: Motion, pairs: Iterable[tuple[str, str]] | None
+) -> list[tuple[Skeleton, NDArray[np.int32]]]:
+    """The motion's skeleton and those it had before dummies were dropped, each with its pairs."""
+    records: list[Dropped] = []
+    record = motion.dropped
+    while record is not None:
+        records.append(record)
+        record = record.before
+    skeletons = [motion.skeleton, *(record.skeleton for record in records)]
+    found = [(skeletons[-1], pair_joints(skeletons[-1], pairs))]
+    for skeleton, record in zip(reversed(skeletons[:-1]), reversed(records), strict=True):
+        found.append((skeleton, _pairs_left(found[-1][1], record)))
+    return found[::-1]
+
+
+def _pairs_left(pair: NDArray[np.int32], record: Dropped) -> NDArray[np.int32]:
+    """The pairs among the joints that stayed when dummies were dropped."""
+    kept = np.setdiff1d(np.arange(len(pair)), record.dummies)
+    lost = kept[np.isin(pair[kept], record.dummies)]
+    if len(lost):
+        one, two = (record.skeleton.names[joint] for joint in (lost[0], pair[lost[0]]))
+        raise SkeletonError(
+            f"joint '{one}' has no mirror image: '{two}' was a dummy and is dropped. "
+            "Mirror first, or bring it back with restore_dummies()."
+        )
+    return np.searchsorted(kept, pair[kept]).astype(np.int32)
+
+
+def _paired_slots(
+    levels: list[tuple[Skeleton, NDArray[np.int32]]], layout: ChannelLayout | None
+) -> NDArray[np.intp]:
+    """(S,) the image of each slot: that of the joints whose bones it turns, or of the joint that owns it."""
+    slots = np.arange(levels[0][0].slot_count)
+    if layout is not None and len(layout.slot_joints) == len(slots):
+        owned = layout.owned_slots[levels[-1][1][layout.slot_joints]]
+        slots = np.where(owned >= 0, owned, slots)
+    for skeleton, pair in levels[::-1]:
+        turned = np.flatnonzero(skeleton.slots >= 0)
+        images = skeleton.slots[pair[turned]]
+        if (images < 0).any():
+            joint = skeleton.names[turned[np.argmin(images)]]
+            raise SkeletonError(f"the bone of joint '{joint}' turns, but that of its mirror image cannot")
+        slots[skeleton.slots[turned]] = images
+    return slots
+
+
+def _mirrored_skeleton(skeleton: Skeleton, pair: NDArray[np.int32]) -> Skeleton:
+    """Offsets and end sites of the two sides exchanged; names, parents and slots stay."""
+    linked = skeleton.links[pair]
+    return replace(
+        skeleton,
+        offsets=skeleton.offsets[pair] * _POINT,
+        ends=skeleton.ends[pair],
+        links=np.where(linked >= 0, pair[linked], -1),
+    )
+
+
+def _mirrored_layout(layout: ChannelLayout, pair: NDArray[np.int32]) -> ChannelLayout:
+    return replace(layout, names=tuple(layout.names[image] for image in pair))
+
+
+def _mirrored_record(record: Dropped, levels: list[tuple[Skeleton, NDArray[np.int32]]]) -> Dropped:
+    """What was dropped, mirrored, so that it can still be brought back."""
+    skeleton, pair = levels[0]
+    return Dropped(
+        skeleton=_mirrored_skeleton(skeleton, pair),
+        layout=None if record.layout is None else _mirrored_layout(record.layout, pair),
+        translated=tuple(pair[list(record.translated)].tolist()),
+        dummies=tuple(sorted(pair[list(record.dummies)].tolist())),
+        before=None if record.before is None else _mirrored_record(record.before, levels[1:]),
+    )

@@ -1,0 +1,76 @@
+"""A motion at another rate."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr import _core
+from gmr.arrays import read_only
+from gmr.errors import GmrError
+from gmr.frames import Pose
+
+if TYPE_CHECKING:
+    from gmr.motion import Motion
+
+__all__ = ["nominal_fps", "resample"]
+
+_PRINTED = 1e-4
+"""How far a printed frame time may be from the rate that was meant: .0083333 is 120 fps, 0.0333 is not 30."""
+
+
+def nominal_fps(motion: Motion) -> float:
+    """Frames a second, as a whole number where the file's frame time is one that was cut off in print."""
+    fps = motion.fps
+    whole = round(fps) if math.isfinite(fps) else fps
+    return float(whole) if abs(fps - whole) <= _PRINTED * fps else fps
+
+
+def resample(motion: Motion, fps: float) -> Motion:
+    """The motion at ``fps`` frames a second: rotations by slerp, translations linearly.
+
+    The first frame stays. The last one stays where it falls on a new frame; else the motion ends at the last
+    new frame before it, for nothing is known after it. Where the old rate is a multiple of the new one,
+    frames are taken as they are.
+
+    Args:
+        motion: any; a frame time cut off in print (.0083333) counts as the rate that was meant (120).
+        fps: frames a second, above 0.
+
+    Returns:
+        A new motion; the same one where it has this rate already.
+
+    Raises:
+        GmrError: the rate is not above 0, or the motion has a frame time of 0.
+    """
+    if not (math.isfinite(fps) and fps > 0):
+        raise GmrError(f"a motion cannot be resampled to {fps} frames a second; give a rate above 0")
+    if motion.frame_time == 0:
+        raise GmrError(
+            f"{motion.name or 'this motion'} has a frame time of 0, so it has no rate to resample from"
+        )
+    step = nominal_fps(motion) / fps
+    if math.isclose(step, 1, rel_tol=1e-9):
+        return motion
+    if math.isclose(step, round(step), rel_tol=1e-9):
+        source = motion.source.frames(slice(None, None, round(step)))
+        return replace(motion, source=source, frame_time=1 / fps)
+    last = max(motion.frame_count - 1, 0)
+    count = math.floor(last / step * (1 + 1e-12)) + 1 if motion.frame_count else 0
+    times = np.minimum(np.arange(count) * step, last)
+    return replace(motion, source=_interpolated(motion.pose, times), frame_time=1 / fps)
+
+
+def _interpolated(pose: Pose, times: NDArray[np.float64]) -> Pose:
+    """The pose at ``times``, in frames from 0 to the last."""
+    before = np.minimum(times.astype(np.intp), max(len(pose) - 2, 0))
+    after = np.minimum(before + 1, max(len(pose) - 1, 0))
+    weight = (times - before)[:, None, None]
+    start, end = pose.translations[before], pose.translations[after]
+    layout = None if pose.layout is None else pose.layout.completed()
+    rotations = np.asarray(_core.slerp_frames(pose.rotations, times))
+    return Pose(read_only(rotations), pose.translated, read_only(start + weight * (end - start)), layout)

@@ -1,0 +1,28 @@
+"""What all tests share: real files to read, and how long hypothesis may search."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+settings.register_profile(
+    "default", deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.register_profile("thorough", deadline=None, max_examples=2000)
+settings.load_profile("default")
+
+DATA = Path(__file__).parent / "data"
+
+
+@pytest.fixture(scope="session")
+def data() -> Path:
+    """The folder of small real files; see its README for where they come from."""
+    return DATA
+
+
+@pytest.fixture(scope="session")
+def walk_path() -> Path:
+    """A walk of CMU's: 60 frames, dummies, a T-pose before the first frame."""
+    return DATA / "cmu_07_01.bvh"
