@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.evaluation.frames import Frames
-from gmr.evaluation.log import FORCED, JUMPED, PLAYED_ON, Log, recorded_steps
+from gmr.evaluation.log import FORCED, JUMPED, PLAYED_ON, Log
 from gmr.evaluation.scenario import Trial
 
 RATE = 60.0
@@ -65,7 +65,8 @@ def walked(
         answer: speed and turn rate reached, from those asked for.
         rows: (T, S) the frames shown; the dataset's from the first on, round and round, where not given.
     """
-    steps = max(round(trial.seconds * RATE) for trial in trials) + 1
+    lengths = np.array([round(trial.seconds * RATE) for trial in trials])
+    steps = int(lengths.max())
     asked = np.stack([_requests(trial, steps) for trial in trials])
     requests, which = np.unique(asked.reshape(-1, 2), axis=0, return_inverse=True)
     given = np.array([answer(*request) for request in requests.tolist()])[which].reshape(asked.shape)
@@ -78,40 +79,41 @@ def walked(
     forced = jumped.copy()
     forced[:, 1:] &= ~frames.has_next[rows[:, :-1]]
     searched = np.where(jumped, 1.0, np.nan)
-    return Log(
-        x=x,
-        z=z,
-        heading=(heading + np.pi) % (2 * np.pi) - np.pi,
-        ref_x=ref_x,
-        ref_z=ref_z,
-        ref_heading=ref_heading,
-        ref_speed=asked[:, :, 0],
-        ref_turn_rate=np.radians(asked[:, :, 1]),
-        row=rows,
-        status=np.where(forced, FORCED, np.where(jumped, JUMPED, PLAYED_ON)).astype(np.uint8),
-        cost_pose=0.25 * searched,
-        cost_trajectory=0.5 * searched,
-        discontinuity=0.03 * searched,
-        recorded=recorded_steps(trials, steps, RATE),
-        rate=RATE,
-    )
+    columns = {
+        "lengths": lengths,
+        "recorded_from": np.array([round(trial.recorded_from * RATE) for trial in trials]),
+        "x": x,
+        "z": z,
+        "heading": (heading + np.pi) % (2 * np.pi) - np.pi,
+        "ref_x": ref_x,
+        "ref_z": ref_z,
+        "ref_heading": ref_heading,
+        "ref_speed": asked[:, :, 0],
+        "ref_turn_rate": np.radians(asked[:, :, 1]),
+        "row": rows,
+        "status": np.where(forced, FORCED, np.where(jumped, JUMPED, PLAYED_ON)),
+        "cost_pose": 0.25 * searched,
+        "cost_trajectory": 0.5 * searched,
+        "discontinuity": 0.03 * searched,
+    }
+    return Log.of(columns, RATE)
 
 
 def _requests(trial: Trial, steps: int) -> NDArray[np.float64]:
-    """(steps, 2) speed and turn rate asked for on the way to each step."""
+    """(steps, 2) speed and turn rate asked for on the way from each step; the last ones on and on."""
     wanted = [
         (segment.speed, segment.turn_rate_deg)
         for segment in trial.segments
         for _ in range(round(segment.seconds * RATE))
     ]
-    wanted = [wanted[0], *wanted]
     return np.array(wanted + [wanted[-1]] * (steps - len(wanted)))
 
 
 def _path(speeds: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
     """x, z and heading of a root that makes each step along the mean of its headings before and after."""
-    way, turn = speeds[:, :, 0] / RATE, np.radians(speeds[:, :, 1]) / RATE
-    way[:, 0] = turn[:, 0] = 0.0
+    way, turn = speeds[:, :-1, 0] / RATE, np.radians(speeds[:, :-1, 1]) / RATE
     heading = np.cumsum(turn, axis=1)
     middle = heading - turn / 2
-    return np.cumsum(way * np.sin(middle), axis=1), np.cumsum(way * np.cos(middle), axis=1), heading
+    ways = (way * np.sin(middle), way * np.cos(middle), turn)
+    x, z, heading = (np.pad(np.cumsum(each, axis=1), ((0, 0), (1, 0))) for each in ways)
+    return x, z, heading

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gmr.evaluation.log import recorded_steps
 from gmr.evaluation.scenario import constant_trials
+from locomotion import Arc, frames_of, walked
 
 
 def test_the_grid_is_the_papers_81_pairs_in_order() -> None:
@@ -36,12 +36,10 @@ def test_the_authors_run_up_is_ten_metres_and_straight_trials_are_short() -> Non
 
 def test_as_many_steps_are_recorded_as_the_recording_lasts() -> None:
     trials = constant_trials((1.0, 3.0), (0.0, 50.0), preset="mig2022")
-    recorded = recorded_steps(trials, 3000, 60.0)
-    np.testing.assert_array_equal(recorded.sum(axis=1), [300, 1500, 300, 1500])
-    assert not recorded[0, 600]
-    assert recorded[0, 601]
-    assert recorded[0, 900]
-    assert not recorded[0, 901]
+    log = walked(trials, frames_of({"a.bvh": Arc(9.0, 1.0)}))
+    np.testing.assert_array_equal(log.recorded.sum(axis=1), [300, 1500, 300, 1500])
+    np.testing.assert_array_equal(log.moving.sum(axis=1), [299, 1499, 299, 1499])
+    assert np.flatnonzero(log.recorded[0]).tolist() == list(range(600, 900))
 
 
 @pytest.mark.parametrize(

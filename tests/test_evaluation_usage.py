@@ -14,7 +14,7 @@ from locomotion import RATE, Arc, frames_of, walked
 CLIPS = {"a.bvh": Arc(4.0, 1.0), "b.bvh": Arc(3.0, 2.0, 30.0), "b.bvh (mirrored)": Arc(3.0, 2.0, -30.0, True)}
 FRAMES = frames_of(CLIPS)
 TRIALS = constant_trials((1.0,), (0.0, 25.0))
-STEPS = 35 * 60 + 1
+STEPS = 35 * 60
 
 
 def shown(*stretches: tuple[int, int]) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:
@@ -34,7 +34,7 @@ def test_usage_has_every_frame_and_counts_every_recorded_step() -> None:
 
 
 def test_clips_tell_their_share_of_the_time_and_of_their_frames() -> None:
-    log = walked(TRIALS, FRAMES, rows=shown((0, 301), (241, 90)))
+    log = walked(TRIALS, FRAMES, rows=shown((0, 300), (241, 90)))
     clips = clips_table("set", play_counts(log, FRAMES), FRAMES)
     assert clips["clip"].tolist() == list(CLIPS)
     assert clips["mirrored"].tolist() == [False, False, True]
@@ -47,7 +47,7 @@ def test_clips_tell_their_share_of_the_time_and_of_their_frames() -> None:
 
 
 def test_a_jump_is_told_by_its_frames_and_its_kind() -> None:
-    # Recording starts after step 300: 60 steps of a, to the middle of b, back within b, off its end into a.
+    # Recording starts at step 300: 60 steps of a, to the middle of b, back within b, off its end into a.
     log = walked(TRIALS[:1], FRAMES, rows=shown((0, 241), (0, 120), (261, 50), (251, 171), (5, 100))[:1])
     table = transitions_table("set", "constant", transitions_of(log, FRAMES), FRAMES)
     pairs = {
@@ -58,7 +58,7 @@ def test_a_jump_is_told_by_its_frames_and_its_kind() -> None:
     assert pairs.pop(("b.bvh", 69, "b.bvh", 10)) == ("intra-clip", 1)
     assert pairs.pop(("b.bvh", 180, "a.bvh", 5)) == ("forced end", 1)
     assert pairs.pop(("a.bvh", 104, "a.bvh", 0)) == ("intra-clip", 1)
-    assert pairs == {("a.bvh", 199, "a.bvh", 0): ("intra-clip", (STEPS - 682 - 1) // 200)}
+    assert pairs == {("a.bvh", 199, "a.bvh", 0): ("intra-clip", (STEPS - 682) // 200)}
     np.testing.assert_allclose(table["discontinuity_mean"], 0.03)
     np.testing.assert_allclose(table["from_seconds"], table["from_frame"] / RATE)
 

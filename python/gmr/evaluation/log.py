@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
-
-from gmr.evaluation.scenario import Trial
 
 __all__ = ["FORCED", "JUMPED", "KEPT", "PLAYED_ON", "Log"]
 
@@ -28,14 +26,14 @@ _DOUBLES: Final = (
 
 @dataclass(frozen=True, slots=True)
 class Log:
-    """T trials of at most S steps; a shorter trial ends where ``recorded`` does.
+    """T trials of at most S steps; what lies after the end of a shorter one is not ``recorded``.
 
     Attributes:
         x, z: (T, S) root on the ground, metres.
         heading: (T, S) radians, forward = (sin, cos) in (x, z).
         ref_x, ref_z, ref_heading: (T, S) the planned path at the same time.
-        ref_speed, ref_turn_rate: (T, S) what was asked for, m/s and radians/s.
-        row: (T, S) row of the frames shown.
+        ref_speed, ref_turn_rate: (T, S) what is asked for from this step to the next, m/s and radians/s.
+        row: (T, S) row of the frame shown; it takes the root to the next step.
         status: (T, S) uint8: PLAYED_ON, KEPT (searched, and stayed), JUMPED, FORCED (jumped at a clip's end).
         cost_pose, cost_trajectory: (T, S) parts of the cost found by a search, NaN where there was none.
         discontinuity: (T, S) mean distance of the joints between the pose left and the pose entered, metres,
@@ -61,23 +59,27 @@ class Log:
     rate: float
 
     @classmethod
-    def of(cls, steps: Mapping[str, NDArray[Any]], trials: Sequence[Trial], rate: float) -> Log:
-        """The log of ``trials`` from the (T, S) arrays of the simulation, in double precision."""
+    def of(cls, columns: Mapping[str, NDArray[Any]], rate: float) -> Log:
+        """The log from the columns of the simulation, in double precision.
+
+        Args:
+            columns: ``lengths`` and ``recorded_from`` (T,) in steps, and (T, S) arrays named as here.
+            rate: steps per second.
+        """
+        step = np.arange(columns["x"].shape[1])[None, :]
+        first, length = columns["recorded_from"][:, None], columns["lengths"][:, None]
         return cls(
-            **{name: np.asarray(steps[name], np.float64) for name in _DOUBLES},
-            row=np.asarray(steps["row"], np.int64),
-            status=np.asarray(steps["status"], np.uint8),
-            recorded=recorded_steps(trials, steps["row"].shape[1], rate),
+            **{name: np.asarray(columns[name], np.float64) for name in _DOUBLES},
+            row=np.asarray(columns["row"], np.int64),
+            status=np.asarray(columns["status"], np.uint8),
+            recorded=(first <= step) & (step < length),
             rate=rate,
         )
 
-
-def recorded_steps(trials: Sequence[Trial], steps: int, rate: float) -> NDArray[np.bool_]:
-    """(T, steps) which steps are recorded: those in (recorded_from, seconds] of the trial.
-
-    The step at the very start of the recording belongs to what was before, as the way to it does.
-    """
-    first = np.array([round(trial.recorded_from * rate) + 1 for trial in trials])[:, None]
-    last = np.array([round(trial.seconds * rate) for trial in trials])[:, None]
-    step = np.arange(steps)[None, :]
-    return (first <= step) & (step <= last)
+    @property
+    def moving(self) -> NDArray[np.bool_]:
+        """(T, S) the recorded steps that are followed by another: those that have a speed."""
+        moving = self.recorded.copy()
+        moving[:, :-1] &= self.recorded[:, 1:]
+        moving[:, -1] = False
+        return moving

@@ -35,9 +35,9 @@ def path_speed(log: Log) -> Steps:
     """Speed along the path actually gone, ``v_r = |dp| / dt`` (section 3.2.3).
 
     Returns:
-        (T, S) metres per second on the way from step i - 1 to step i, at index i; NaN at index 0.
+        (T, S) metres per second on the way from step i to step i + 1, at index i; NaN at the last.
     """
-    return _from_the_step_before(np.hypot(np.diff(log.x), np.diff(log.z)) * log.rate)
+    return _to_the_next_step(np.hypot(np.diff(log.x), np.diff(log.z)) * log.rate)
 
 
 def turn_rate(log: Log) -> Steps:
@@ -48,26 +48,27 @@ def turn_rate(log: Log) -> Steps:
     """
     turn = np.diff(log.heading)
     wrapped = turn - 2 * np.pi * np.round(turn / (2 * np.pi))
-    return _from_the_step_before(wrapped * log.rate)
+    return _to_the_next_step(wrapped * log.rate)
 
 
-def centred_mean(values: Steps, recorded: Mask, rate: float) -> tuple[Steps, Mask]:
+def centred_mean(values: Steps, moving: Mask, rate: float) -> tuple[Steps, Mask]:
     """Mean of the second around each step, which takes the sway of the single footsteps out.
 
     Args:
-        values: (T, S) speeds or turn rates, at the end of the way they stand for.
-        recorded: (T, S) the steps that count.
+        values: (T, S) speeds or turn rates, at the beginning of the way they stand for.
+        moving: (T, S) the steps that count.
         rate: steps per second.
 
     Returns:
-        (T, S) the means, and where they stand on recorded steps only.
+        (T, S) the means, and where they stand on counting steps only.
     """
     half = round(rate / 2)
-    total = np.cumsum(np.where(recorded, values, 0.0), axis=1)
-    count = np.cumsum(recorded, axis=1)
+    none = np.zeros((len(values), 1))
+    total = np.concatenate([none, np.cumsum(np.where(moving, values, 0.0), axis=1)], axis=1)
+    count = np.concatenate([none, np.cumsum(moving, axis=1)], axis=1)
     means = np.full(values.shape, np.nan)
     whole = np.zeros(values.shape, bool)
-    inner = slice(half, values.shape[1] - half)
+    inner = slice(half, values.shape[1] - half + 1)
     means[:, inner] = (total[:, 2 * half :] - total[:, : -2 * half]) / (2 * half)
     whole[:, inner] = count[:, 2 * half :] - count[:, : -2 * half] == 2 * half
     return means, whole
@@ -137,5 +138,5 @@ def percentile_where(values: Steps, where: Mask, percent: float) -> PerTrial:
     )
 
 
-def _from_the_step_before(values: Steps) -> Steps:
-    return np.concatenate([np.full((len(values), 1), np.nan), values], axis=1)
+def _to_the_next_step(values: Steps) -> Steps:
+    return np.concatenate([values, np.full((len(values), 1), np.nan)], axis=1)

@@ -68,22 +68,22 @@ def trials_table(
 def _accuracy(log: Log) -> dict[str, NDArray[np.float64]]:
     speed, turn_rate = metrics.path_speed(log), metrics.turn_rate(log)
     return {
-        "speed_error": metrics.static_error(speed, log.ref_speed, log.recorded),
-        "turn_rate_error_deg": np.degrees(metrics.static_error(turn_rate, log.ref_turn_rate, log.recorded)),
-        "speed_deviation": metrics.dynamic_error(speed, log.ref_speed, log.recorded),
+        "speed_error": metrics.static_error(speed, log.ref_speed, log.moving),
+        "turn_rate_error_deg": np.degrees(metrics.static_error(turn_rate, log.ref_turn_rate, log.moving)),
+        "speed_deviation": metrics.dynamic_error(speed, log.ref_speed, log.moving),
         "turn_rate_deviation_deg": np.degrees(
-            metrics.dynamic_error(turn_rate, log.ref_turn_rate, log.recorded)
+            metrics.dynamic_error(turn_rate, log.ref_turn_rate, log.moving)
         ),
     }
 
 
 def _accuracy_over_a_second(log: Log) -> dict[str, NDArray[np.float64]]:
     speed, turn_rate = metrics.path_speed(log), metrics.turn_rate(log)
-    slow_speed, whole = metrics.centred_mean(speed, log.recorded, log.rate)
-    slow_turn_rate, _ = metrics.centred_mean(turn_rate, log.recorded, log.rate)
+    slow_speed, whole = metrics.centred_mean(speed, log.moving, log.rate)
+    slow_turn_rate, _ = metrics.centred_mean(turn_rate, log.moving, log.rate)
     return {
-        "speed_mean": mean_where(speed, log.recorded),
-        "turn_rate_mean_deg": np.degrees(mean_where(turn_rate, log.recorded)),
+        "speed_mean": mean_where(speed, log.moving),
+        "turn_rate_mean_deg": np.degrees(mean_where(turn_rate, log.moving)),
         "speed_deviation_1s": metrics.dynamic_error(slow_speed, log.ref_speed, whole),
         "turn_rate_deviation_1s_deg": np.degrees(
             metrics.dynamic_error(slow_turn_rate, log.ref_turn_rate, whole)
