@@ -17,7 +17,7 @@ from itertools import pairwise
 
 from gmr.channels import POSITIONS, ROTATIONS
 from gmr.formats.numerals import number, why_no_number
-from gmr.formats.text import Text, shown
+from gmr.formats.text import Text, named, shown
 from gmr.skeleton import End
 
 __all__ = ["Hierarchy", "read_hierarchy"]
@@ -58,7 +58,7 @@ class _Block:
 
 
 def read_hierarchy(text: Text) -> Hierarchy:
-    """Reads from HIERARCHY to the brace that closes the last root.
+    """Reads from HIERARCHY to the brace that closes the last root, and leaves ``text`` there.
 
     Raises:
         FormatError: the text is no hierarchy; line, joint and remedy are named.
@@ -112,9 +112,9 @@ class _Reader:
         start = self.text.at
         name = self.text.decoded(self.text.take_phrase(), "the name")
         if any(c < " " or c == "\x7f" for c in name):
-            what = f"the name {name!r} holds control characters. Rename the joint, or export the file again."
+            what = f"the name {named(name)} holds control characters. Rename the joint, or export again."
             raise self.text.failure(what, at=start)
-        self.take_brace(f"joint '{name}'")
+        self.take_brace(f"joint {named(name)}")
         return _Block(self.found.add(name, parent), start)
 
     def take_brace(self, owner: str) -> None:
@@ -186,7 +186,7 @@ class _Reader:
     def read_end_site(self, block: _Block) -> None:
         start, parent = self.text.at, self.found.names[block.joint]
         self.text.take_phrase()
-        owner = f"the End Site of joint '{parent}'"
+        owner = f"the End Site of joint {named(parent)}"
         self.take_brace(owner)
         end = self.found.add(f"{parent}_end", block.joint, End.SITE)
         if self.text.take().upper() != b"OFFSET":
@@ -220,7 +220,7 @@ class _Reader:
         return self.text.failure(what, at=self.text.at - len(word), expected=expected, column=True)
 
     def joint(self, block: _Block) -> str:
-        return f"joint '{self.found.names[block.joint]}'"
+        return f"joint {named(self.found.names[block.joint])}"
 
 
 _WORDS = frozenset((b"", b"{", b"}", b"OFFSET", b"CHANNELS", b"JOINT", b"END", b"ROOT", b"MOTION"))

@@ -1,26 +1,22 @@
-"""BVH bytes to a motion: the hierarchy, then a block of numbers that the core reads."""
+"""BVH bytes to a motion: the hierarchy, the timing, and the rows of numbers, which the core reads."""
 
 from __future__ import annotations
 
 import re
-from typing import Literal, NamedTuple
+from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
-from gmr import _core
-from gmr.channels import ChannelLayout
-from gmr.errors import FormatError
-from gmr.formats.bvh_hierarchy import Hierarchy, read_hierarchy
+from gmr.formats.bvh_rows import read_rows
+from gmr.formats.bvh_shape import read_shape
 from gmr.formats.numerals import number, why_no_number
 from gmr.formats.text import Text, shown
 from gmr.motion import Motion
-from gmr.skeleton import Skeleton
 
 __all__ = ["read_bvh"]
 
-_FRAMES = re.compile(rb"\s*+Frames\s*+:?[^\S\r\n]*+([^\r\n]*)", re.IGNORECASE)
+_FRAMES = re.compile(rb"\s*+Frames\s*+:?[^\S\r\n]*+(\S*)", re.IGNORECASE)
 _FRAME_TIME = re.compile(rb"\s*+Frame\s*+Time\s*+:?[^\S\r\n]*+(\S*)", re.IGNORECASE)
+_MOST_FRAMES = 10**18
+"""A count of more digits is taken for this; no file holds as many."""
 
 
 def read_bvh(
@@ -42,7 +38,7 @@ def read_bvh(
 
     Returns:
         A motion with every joint of the file. A leaf that turns but has no End Site is given a zero-length
-        tip, so that its rotation is kept. Errors count frames from 0, as the motion does.
+        tip, so that its rotation is kept. Files with the same hierarchy share skeleton and layout.
 
     Raises:
         FormatError: the file cannot be read; the message says where, why, and what to do.
@@ -51,43 +47,29 @@ def read_bvh(
     if positions not in ("replace", "add"):
         raise ValueError(f"positions={positions!r} is not known; use 'replace' or 'add'")
     text = Text(bytes(data), name=name, strict=strict)
-    hierarchy = read_hierarchy(text)
-    columns = sum(len(channels) for channels in hierarchy.channels)
-    timing = _read_timing(text)
-    rows = _read_rows(text, hierarchy, columns, timing.frames)
-    turning = [joint for joint, channels in enumerate(hierarchy.channels) if channels]
-    skeleton = Skeleton.post_rotation(
-        hierarchy.names, hierarchy.parents, hierarchy.offsets, ends=hierarchy.ends, turning=turning
-    )
-    layout = ChannelLayout.of(skeleton, hierarchy.channels, adds_offset=positions == "add")
-    return Motion.from_rows(skeleton, layout, rows, timing.frame_time, name=name)
+    shape = read_shape(text, adds_offset=positions == "add")
+    frames, frame_time = _read_timing(text)
+    rows = read_rows(text, shape, frames)
+    return Motion.from_rows(shape.skeleton, shape.layout, rows, frame_time, name=name)
 
 
-class _Timing(NamedTuple):
-    frames: int
-    frame_time: float
-
-
-def _read_timing(text: Text) -> _Timing:
-    """Reads from MOTION to the frame time."""
-    word = text.peek()
+def _read_timing(text: Text) -> tuple[int, float]:
+    """Reads from MOTION to the frame time: the declared count, and seconds."""
+    word = text.take()
     if not word:
         text.odd("the file has no MOTION; read as a skeleton without frames. Export it again for its frames.")
-        return _Timing(0, 0.0)
+        return 0, 0.0
     if word.upper() != b"MOTION":
-        text.take()
         what = f"{shown(word)} follows the last joint. Write MOTION there, or ROOT for another tree."
         if word == b"}":
             what = "there is one '}' too many. Remove it, or write the '{' that is missing."
         raise text.failure(what, at=text.at - len(word), expected="MOTION", column=True)
-    text.take()
-    frames = _frame_count(text)
-    frame_time = _frame_time(text)
+    frames, frame_time = _frame_count(text), _frame_time(text)
     if frame_time == 0 and frames > 1:
         text.odd(
             "the frame time is 0, so that the frames have no duration. Write seconds after 'Frame Time:'."
         )
-    return _Timing(frames, frame_time)
+    return frames, frame_time
 
 
 def _frame_count(text: Text) -> int:
@@ -95,25 +77,26 @@ def _frame_count(text: Text) -> int:
     if found is None:
         what = f"MOTION is followed by {_next(text)}. Write 'Frames:' and the number of frames."
         raise text.failure(what, expected="Frames: <count>")
-    found = found.strip()
     if not found.isdigit():
-        what = f"{shown(found)} after 'Frames:' is no count. Write a whole number of frames."
+        what = shown(found) if found else "nothing"
+        what = f"'Frames:' is followed by {what}. Write how many frames there are, a whole number."
         raise text.failure(what, expected="a whole number")
-    # No file holds more rows than bytes, and Python refuses to convert endless digits.
-    return int(found) if len(found.lstrip(b"0")) <= 18 else 10**18
+    # Python refuses to convert thousands of digits.
+    digits = found.lstrip(b"0")
+    return int(digits or b"0") if len(digits) <= 18 else _MOST_FRAMES
 
 
 def _frame_time(text: Text) -> float:
     found = text.take_match(_FRAME_TIME)
     if not found:
-        what = f"'Frames:' is followed by {_next(text)}. Write 'Frame Time:' and the seconds of a frame."
+        what = (
+            f"the frame count is followed by {_next(text)}. Write 'Frame Time:' and the seconds of a frame."
+        )
         raise text.failure(what, expected="Frame Time: <seconds>")
     value = number(found)
     if value is None or value < 0:
         why = (
-            why_no_number(found)
-            if value is None
-            else f"{shown(found)} is negative. Write seconds, 0 or more."
+            why_no_number(found) if value is None else f"{shown(found)} is negative. Write 0 seconds or more."
         )
         raise text.failure(f"Frame Time: {why}", at=text.at - len(found), expected="seconds", column=True)
     return value
@@ -121,55 +104,3 @@ def _frame_time(text: Text) -> float:
 
 def _next(text: Text) -> str:
     return shown(text.peek()) if text.peek() else "the end of the file"
-
-
-def _read_rows(text: Text, hierarchy: Hierarchy, columns: int, declared: int) -> NDArray[np.float64]:
-    """(F, C) rows, read-only: those declared, or those that are there."""
-    rows, end, fault = _core.parse_rows(text.data, text.at, columns, min(declared, len(text.data)))
-    rows.flags.writeable = False
-    if fault is not None and fault[0] != "cut":
-        raise _row_failure(text, hierarchy, columns, _Fault(*fault))
-    if fault is not None:
-        what = f"the file ends inside frame {fault[1]}, after {fault[2]} of its {columns} numbers"
-        text.odd(f"{what}; the frame is left out. Export the file again for the rest.", at=fault[4])
-    elif len(rows) < declared:
-        what = f"the file declares {declared:,} frames and holds {len(rows):,}, which are read"
-        text.odd(f"{what}. Correct the count after 'Frames:', or export the file again.")
-    elif more := _core.count_rows(text.data, end):
-        what = (
-            f"the file declares {declared:,} frames and holds {declared + more:,} rows; the last are left out"
-        )
-        text.odd(f"{what}. Correct the count after 'Frames:' to have them.")
-    return rows
-
-
-class _Fault(NamedTuple):
-    kind: str
-    row: int
-    field: int
-    line: int
-    start: int
-    end: int
-
-
-def _row_failure(text: Text, hierarchy: Hierarchy, columns: int, fault: _Fault) -> FormatError:
-    """The error for a row that is wrong: line, joint and channel in words."""
-    if fault.kind == "row too short":
-        what = f"frame {fault.row} has {fault.field} of {columns} numbers; the next is missing"
-        mend = "Write each frame on a line of its own."
-        return text.failure(f"{_channel(hierarchy, fault.field)}: {what}. {mend}", at=fault.start)
-    if fault.kind == "row too long":
-        found = columns + len(text.data[fault.start : fault.end].split())
-        what = f"frame {fault.row} has {found} numbers, but the joints have {columns} channels"
-        return text.failure(f"{what}. Remove those too many, or correct CHANNELS.", at=fault.start)
-    why = why_no_number(text.data[fault.start : fault.end])
-    return text.failure(f"{_channel(hierarchy, fault.field)}: {why}", at=fault.start, column=True)
-
-
-def _channel(hierarchy: Hierarchy, column: int) -> str:
-    """The joint and channel that a column belongs to."""
-    for name, channels in zip(hierarchy.names, hierarchy.channels, strict=True):
-        if column < len(channels):
-            return f"joint '{name}', {channels[column]}"
-        column -= len(channels)
-    return "a number beyond the last channel"

@@ -29,7 +29,7 @@ def why_no_number(token: bytes) -> str:
     if b"nan" in lower or b"#" in lower or b"inf" in lower:
         return (
             f"{shown(token)} stands for no number: the program that wrote the file had no value here. "
-            "Write a number, or cut the frame out."
+            "Fill the gap there, or write a number."
         )
     if _COMMA.fullmatch(token):
         with_point = shown(token.replace(b",", b"."))

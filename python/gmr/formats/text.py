@@ -8,11 +8,13 @@ import warnings
 
 from gmr.errors import FormatError, FormatWarning
 
-__all__ = ["Text", "shown"]
+__all__ = ["Text", "named", "shown"]
 
 _TOKEN = re.compile(rb"\s*+([{}]|[^\s{}]+)")
 _PHRASE = re.compile(rb"\s*+([^\r\n{}]*)")
 _LINE_END = re.compile(rb"\r\n?|\n")
+
+_LONGEST_SHOWN = 60
 
 _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF32_LE, "utf-32"),
@@ -37,6 +39,7 @@ class Text:
     def __init__(self, data: bytes, *, name: str | None = None, strict: bool = False) -> None:
         self.name = name
         self.strict = strict
+        self.oddities = 0
         self._said_latin = False
         self.data = self._utf8(data)
         self.at = len(codecs.BOM_UTF8) if data.startswith(codecs.BOM_UTF8) else 0
@@ -61,6 +64,11 @@ class Text:
         end."""
         match = _TOKEN.match(self.data, self.at)
         return match[1] if match else b""
+
+    def peek_at(self) -> int:
+        """The byte at which the next token begins; the length of the text at the end."""
+        match = _TOKEN.match(self.data, self.at)
+        return match.start(1) if match else len(self.data)
 
     def take(self) -> bytes:
         """The next token; b"" at the end."""
@@ -93,7 +101,8 @@ class Text:
         except UnicodeDecodeError:
             if not self._said_latin:
                 self._said_latin = True
-                self.odd(f"{what} {shown(raw)} is no UTF-8 and read as Latin-1. Save the file as UTF-8.")
+                read = named(raw.decode("latin-1"))
+                self.odd(f"{what} {read} is not written in UTF-8; read as Latin-1. Save the file as UTF-8.")
             return raw.decode("latin-1")
 
     def line_of(self, at: int) -> int:
@@ -120,15 +129,21 @@ class Text:
 
     def odd(self, what: str, *, at: int | None = None) -> None:
         """Warns of something that is read all the same; under ``strict`` it is an error."""
+        self.oddities += 1
         error = self.failure(what, at=at)
         if self.strict:
             raise error
         warnings.warn(FormatWarning(str(error)), stacklevel=4)
 
 
-def shown(token: bytes, limit: int = 40) -> str:
-    """A token in quotes as an error shows it: what cannot be printed escaped, the rest of a long one left
+def shown(token: bytes) -> str:
+    """A token in quotes as an error shows it."""
+    # Four bytes make a character at most.
+    return named(token[: 4 * _LONGEST_SHOWN + 4].decode(errors="replace"))
+
+
+def named(name: str) -> str:
+    """A name in quotes as an error shows it: what cannot be printed is escaped, the rest of a long one left
     out."""
-    text = token[:limit].decode(errors="replace").replace("'", "\\'")
-    escaped = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
-    return f"'{escaped}'" if len(token) <= limit else f"'{escaped}...'"
+    escaped = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in name[:_LONGEST_SHOWN])
+    return f"'{escaped}'" if len(name) <= _LONGEST_SHOWN else f"'{escaped}...'"

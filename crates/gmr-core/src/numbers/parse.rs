@@ -28,11 +28,11 @@ pub struct RowsRead {
 }
 
 impl ParseRows<'_> {
-    /// The most rows that the rest of the text has room for, whatever a header declares.
+    /// The most rows that can begin in the rest of the text, whatever a header declares.
     #[must_use]
     pub fn most_rows(&self) -> usize {
         let left = self.text.len().saturating_sub(self.start);
-        left.div_ceil(2).checked_div(self.columns).unwrap_or(0)
+        if self.columns == 0 { 0 } else { left.div_ceil(2).div_ceil(self.columns) }
     }
 
     /// Reads rows into `out`, `(rows, columns)`, until it is full, the text ends, or something is wrong.

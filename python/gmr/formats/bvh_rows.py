@@ -1,0 +1,72 @@
+"""The rows of numbers of a BVH file, and what to say where they are wrong."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr import _core
+from gmr.errors import FormatError
+from gmr.formats.bvh_shape import Shape
+from gmr.formats.numerals import why_no_number
+from gmr.formats.text import Text, named
+
+__all__ = ["read_rows"]
+
+
+def read_rows(text: Text, shape: Shape, declared: int) -> NDArray[np.float64]:
+    """Reads (F, C) rows, read-only: as many as are declared, or those that are there.
+
+    Raises:
+        FormatError: a row is wrong; its line, joint and channel are named. Frames count from 0.
+    """
+    columns = shape.layout.column_count
+    rows, end, found = _core.parse_rows(text.data, text.at, columns, min(declared, len(text.data)))
+    rows.flags.writeable = False
+    fault = _Fault(*found) if found else None
+    if fault and fault.kind != "cut":
+        raise _failure(text, shape, fault)
+    if fault:
+        what = f"the file ends inside frame {fault.row}, after {fault.field} of its {columns} numbers"
+        text.odd(f"{what}; the frame is left out. Export the file again for the rest.", at=fault.start)
+    elif len(rows) < declared:
+        what = f"{declared:,} frames are declared, but {len(rows):,} are there"
+        text.odd(f"{what}. Correct the count after 'Frames:', or export the file again.")
+    elif more := _core.count_rows(text.data, end):
+        what = f"{declared:,} frames are declared and read, but {declared + more:,} rows are there"
+        text.odd(f"{what}. Correct the count after 'Frames:' to read them all.")
+    return rows
+
+
+class _Fault(NamedTuple):
+    """What ended the reading early, as the core tells it."""
+
+    kind: str
+    row: int
+    field: int
+    line: int
+    start: int
+    end: int
+
+
+def _failure(text: Text, shape: Shape, fault: _Fault) -> FormatError:
+    columns = shape.layout.column_count
+    if fault.kind == "row too short":
+        what = f"frame {fault.row} has {fault.field} of {columns} numbers; the next is missing"
+        mend = "Write each frame on a line of its own."
+        return text.failure(f"{_channel(shape, fault.field)}: {what}. {mend}", at=fault.start)
+    if fault.kind == "row too long":
+        count = columns + len(text.data[fault.start : fault.end].split())
+        what = f"frame {fault.row} has {count} numbers, but the joints have {columns} channels"
+        return text.failure(f"{what}. Remove those too many, or correct CHANNELS.", at=fault.start)
+    why = why_no_number(text.data[fault.start : fault.end])
+    return text.failure(f"{_channel(shape, fault.field)}: {why}", at=fault.start, column=True)
+
+
+def _channel(shape: Shape, column: int) -> str:
+    """The joint and channel that a column belongs to."""
+    joint = int(np.searchsorted(shape.layout.starts, column, side="right")) - 1
+    channel = shape.layout.names[joint][column - int(shape.layout.starts[joint])]
+    return f"joint {named(shape.skeleton.names[joint])}, {channel}"
