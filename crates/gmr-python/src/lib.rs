@@ -8,6 +8,7 @@ mod isa;
 mod kinematics;
 mod matching;
 mod numbers;
+mod playback;
 mod rotation;
 mod trial;
 mod watch;
@@ -21,5 +22,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     kinematics::register(module)?;
     index::register(module)?;
     matching::register(module)?;
-    trial::register(module)
+    trial::register(module)?;
+    playback::register(module)
 }

@@ -9,6 +9,7 @@ pub mod index;
 pub mod inertialization;
 pub mod normalization;
 pub mod path;
+pub mod playback;
 pub mod request;
 pub mod root;
 pub mod trial;

@@ -35,9 +35,9 @@ pub struct LoggedStep {
 /// One trial, step by step.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TrialLog {
-    /// One entry a step of the database's rate, the first at 0 s.
+    /// One entry a step of the database's rate, from 0 s to the end of the last segment, both included.
     pub steps: Vec<LoggedStep>,
-    /// The first step that counts.
+    /// The step at which recording begins: what counts are the ways from it to the next ones.
     pub recorded_from: usize,
 }
 
@@ -120,9 +120,9 @@ impl Trials<'_> {
         let steps_in = |seconds: f64| (seconds * self.database.rate()).round() as usize;
         let mut controller = Controller::new(self.database, self.settings, path)
             .ok_or(TrialError::NoCandidates { tags: self.settings.tags })?;
-        let step_count = steps_in(path.duration()).max(1);
-        let mut steps = Vec::with_capacity(step_count);
-        for _ in 0..step_count {
+        let last = steps_in(path.duration());
+        let mut steps = Vec::with_capacity(last + 1);
+        for _ in 0..=last {
             if progress.is_cancelled() {
                 return Err(TrialError::Cancelled);
             }
@@ -131,7 +131,7 @@ impl Trials<'_> {
             let choice = controller.step().map_err(|error| TrialError::Search { trial, error })?;
             steps.push(LoggedStep { placement, reference, request, choice });
         }
-        Ok(TrialLog { steps, recorded_from: steps_in(self.profiles[trial].record_from).min(step_count - 1) })
+        Ok(TrialLog { steps, recorded_from: steps_in(self.profiles[trial].record_from).min(last) })
     }
 }
 

@@ -40,19 +40,24 @@ fn topology() -> Topology {
 
 /// The database of these clips at [`RATE`].
 pub fn database(clips: &[Walk]) -> Database {
+    database_at(RATE, clips)
+}
+
+/// The database of these clips at any rate.
+pub fn database_at(rate: f64, clips: &[Walk]) -> Database {
     let schema = Schema::locomotion(1, 2, 0, 4).unwrap();
-    let mut builder = DatabaseBuilder::new(topology(), vec![0], schema, RATE).unwrap();
-    clips.iter().for_each(|clip| clip.add_to(&mut builder));
+    let mut builder = DatabaseBuilder::new(topology(), vec![0], schema, rate).unwrap();
+    clips.iter().for_each(|clip| clip.add_to(&mut builder, rate));
     builder.finish(None).unwrap()
 }
 
 impl Walk {
-    fn add_to(&self, builder: &mut DatabaseBuilder) {
+    fn add_to(&self, builder: &mut DatabaseBuilder, rate: f64) {
         let (mut positions, mut rotations, mut translations) = (Vec::new(), Vec::new(), Vec::new());
         let mut root = RootTrack::default();
         let offsets = [[0.0, 0.0, 0.0], [0.1, -self.leg, 0.0], [-0.1, -self.leg, 0.0], [0.0, 0.0, 0.2]];
         for frame in 0..self.frames {
-            let time = frame as f64 / RATE;
+            let time = frame as f64 / rate;
             let place = self.place(time);
             let turn = DQuat::from_rotation_y(place.heading);
             let swing = 0.5 * (std::f64::consts::TAU * self.cadence * time).sin();
