@@ -12,10 +12,11 @@ reader keeps its own stack, so that nesting has no limit but memory.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
-from itertools import pairwise
 
-from gmr.channels import POSITIONS, ROTATIONS
+from gmr.errors import FormatError
+from gmr.formats.bvh_channels import CHANNELS, checked_channels
 from gmr.formats.numerals import number, why_no_number
 from gmr.formats.text import Text, named, shown
 from gmr.skeleton import End
@@ -102,7 +103,7 @@ class _Reader:
                     blocks.append(self.open_joint(block.joint))
                 case b"END":
                     block.has_children = True
-                    self.read_end_site(block)
+                    self.read_end_site(block.joint)
                 case b"}":
                     self.close(blocks.pop())
                 case _:
@@ -110,122 +111,108 @@ class _Reader:
 
     def open_joint(self, parent: int) -> _Block:
         start = self.text.at
-        name = self.text.decoded(self.text.take_phrase(), "the name")
-        if any(c < " " or c == "\x7f" for c in name):
-            what = f"the name {named(name)} holds control characters. Rename the joint, or export again."
+        raw = self.text.take_phrase()
+        if _CONTROL.search(raw):
+            what = f"the name {shown(raw)} holds control characters. Rename the joint, or export again."
             raise self.text.failure(what, at=start)
-        self.take_brace(f"joint {named(name)}")
-        return _Block(self.found.add(name, parent), start)
+        joint = self.found.add(self.text.decoded(raw, "the name"), parent)
+        self.take_brace(joint, start)
+        return _Block(joint, start)
 
-    def take_brace(self, owner: str) -> None:
-        at = self.text.at
+    def take_brace(self, joint: int, start: int) -> None:
         if self.text.take() != b"{":
-            raise self.text.failure(f"{owner} has no block. Write '{{' after its name.", at=at, expected="{")
+            what = f"{self.title(joint)} has no block. Write '{{' after its name."
+            raise self.text.failure(what, at=start, expected="{")
 
     def read_offset(self, block: _Block) -> None:
         if block.has_offset:
-            raise self.text.failure(f"{self.joint(block)} has two OFFSETs. Remove one.")
+            raise self.text.failure(f"{self.title(block.joint)} has two OFFSETs. Remove one.")
         block.has_offset = True
-        self.found.offsets[block.joint] = self.take_vector(self.joint(block))
+        self.found.offsets[block.joint] = self.take_vector(block.joint)
 
-    def take_vector(self, owner: str) -> Vector:
-        return self.take_number(owner, 0), self.take_number(owner, 1), self.take_number(owner, 2)
+    def take_vector(self, joint: int) -> Vector:
+        start = self.text.at
+        match = self.text.take_match(_VECTOR)
+        if match is not None:
+            x, y, z = (number(token) for token in match.groups())
+            if x is not None and y is not None and z is not None:
+                return x, y, z
+        self.text.at = start
+        raise self.no_vector(joint)
 
-    def take_number(self, owner: str, have: int) -> float:
-        word = self.text.peek()
-        value = number(word)
-        if value is None and word.upper() in _WORDS:
-            what = f"{owner}: OFFSET has {have} number{'s' * (have != 1)}. Write three: x, y and z."
-            raise self.text.failure(what, expected="three numbers")
-        self.text.take()
-        if value is None:
-            what = f"{owner}, OFFSET: {why_no_number(word)}"
-            raise self.text.failure(what, at=self.text.at - len(word), expected="a number", column=True)
-        return value
+    def no_vector(self, joint: int) -> FormatError:
+        """The error for what stands where three numbers should."""
+        for count in range(3):
+            end = self.text.at
+            word = self.text.take()
+            if word.upper() in _WORDS:
+                what = f"OFFSET has {count} number{'s' * (count != 1)}. Write three: x, y and z."
+                return self.text.failure(f"{self.title(joint)}: {what}", at=end, expected="three numbers")
+            if number(word) is None:
+                what = f"{self.title(joint)}, OFFSET: {why_no_number(word)}"
+                return self.text.failure(what, at=self.text.at - len(word), expected="a number", column=True)
+        raise AssertionError("three numbers are a vector")
 
     def read_channels(self, block: _Block) -> None:
-        owner, at = self.joint(block), self.text.at
+        at = self.text.at
         if block.has_channels:
-            raise self.text.failure(f"{owner} has two CHANNELS. Write all its channels in one.")
+            what = f"{self.title(block.joint)} has two CHANNELS. Write all its channels in one."
+            raise self.text.failure(what)
         if block.has_children:
-            raise self.text.failure(f"{owner} has CHANNELS after its children. Move CHANNELS before them.")
+            what = f"{self.title(block.joint)} has CHANNELS after its children. Move CHANNELS before them."
+            raise self.text.failure(what)
         block.has_channels = True
-        count = self.text.take()
-        if not count.isdigit() or len(count) > 9:
-            what = f"{owner}: CHANNELS is followed by {shown(count)}. Write how many channels there are."
-            raise self.text.failure(what, at=at, expected="a whole number")
-        names = []
-        while self.text.peek().lower() in _CHANNELS:
-            names.append(self.text.take().decode())
-        self.check_channels(owner, int(count), names, at)
-        self.found.channels[block.joint] = tuple(names)
+        match = self.text.take_match(CHANNELS)
+        assert match is not None
+        try:
+            self.found.channels[block.joint] = checked_channels(match[1], match[2], self.text.peek())
+        except ValueError as error:
+            raise self.text.failure(f"{self.title(block.joint)} {error}", at=at) from None
 
-    def check_channels(self, owner: str, count: int, names: list[str], at: int) -> None:
-        after = self.text.peek()
-        if after.lower().endswith((b"rotation", b"position", b"scale")):
-            what = f"{owner} has a channel {shown(after)}. There are {', '.join(_CHANNELS.values())}."
-            raise self.text.failure(what, at=at)
-        if count != len(names):
-            missing = abs(count - len(names))
-            ones = "one" if missing == 1 else "ones"
-            mend = f"Write the missing {ones}" if len(names) < count else f"Remove the {ones} too many"
-            raise self.text.failure(
-                f"{owner} declares {count} channel{'s' * (count != 1)} but CHANNELS lists {len(names)} "
-                f"({' '.join(names[:8]) or 'none'}{' ...' * (len(names) > 8)}). {mend}, or change the count.",
-                at=at,
-            )
-        known = [name.lower() for name in names]
-        places = [name for name in known if name.encode() in _PLACES]
-        turns = [name for name in known if name.encode() not in _PLACES]
-        if len(set(places)) < len(places):
-            raise self.text.failure(f"{owner} has a position twice ({' '.join(names)}). Remove one.", at=at)
-        if len(turns) > 3 or any(one == next_ for one, next_ in pairwise(turns)):
-            what = f"{owner} has rotations that are no Euler angles ({' '.join(names[:8])})."
-            raise self.text.failure(f"{what} Write at most three, no two alike in succession.", at=at)
-
-    def read_end_site(self, block: _Block) -> None:
-        start, parent = self.text.at, self.found.names[block.joint]
+    def read_end_site(self, parent: int) -> None:
+        start = self.text.at
         self.text.take_phrase()
-        owner = f"the End Site of joint {named(parent)}"
-        self.take_brace(owner)
-        end = self.found.add(f"{parent}_end", block.joint, End.SITE)
+        end = self.found.add(f"{self.found.names[parent]}_end", parent, End.SITE)
+        self.take_brace(end, start)
         if self.text.take().upper() != b"OFFSET":
-            raise self.text.failure(f"{owner} has no OFFSET. Write one there.", at=start, expected="OFFSET")
-        self.found.offsets[end] = self.take_vector(owner)
+            what = f"{self.title(end)} has no OFFSET. Write one there."
+            raise self.text.failure(what, at=start, expected="OFFSET")
+        self.found.offsets[end] = self.take_vector(end)
         if self.text.take() != b"}":
-            raise self.text.failure(f"{owner} holds more than an OFFSET. Write '}}' after it.", expected="}")
+            what = f"{self.title(end)} holds more than an OFFSET. Write '}}' after it."
+            raise self.text.failure(what, expected="}")
 
     def close(self, block: _Block) -> None:
         if not block.has_offset:
-            what = f"{self.joint(block)} has no OFFSET. Write one, OFFSET 0 0 0 if it is where its parent is."
-            raise self.text.failure(what, expected="OFFSET")
-        turns = any(name.lower().endswith("rotation") for name in self.found.channels[block.joint])
-        if turns and not block.has_children:
+            what = "has no OFFSET. Write one, OFFSET 0 0 0 if it is where its parent is."
+            raise self.text.failure(f"{self.title(block.joint)} {what}", expected="OFFSET")
+        if block.has_children:
+            return
+        if any(name.lower().endswith("rotation") for name in self.found.channels[block.joint]):
             self.found.add(f"{self.found.names[block.joint]}_end", block.joint, End.TIP)
 
-    def unexpected(self, block: _Block, word: bytes) -> Exception:
-        owner = f"{self.joint(block)}, which begins at line {self.text.line_of(block.start)}"
+    def unexpected(self, block: _Block, word: bytes) -> FormatError:
+        """The error for a token that no block of a joint holds."""
+        where = f"{self.title(block.joint)}, which begins at line {self.text.line_of(block.start)}"
+        items = "OFFSET, CHANNELS, JOINT, End Site or }"
         match word.upper():
             case b"":
-                what = f"the file ends inside {owner}. It may be cut off: export it again."
+                what = f"the file ends inside {where}. It may be cut off: export it again."
             case b"MOTION" | b"ROOT":
-                what = f"{word.decode()} stands inside {owner}. Write the closing brace '}}' that is missing."
+                what = f"{word.decode()} stands inside {where}. Write the closing brace '}}' that is missing."
             case b"{":
-                what = f"there is a second '{{' in {owner}. Remove it."
+                what = f"there is a second '{{' in {where}. Remove it."
             case _:
-                what = (
-                    f"{shown(word)} stands inside {owner}. Write OFFSET, CHANNELS, JOINT, End Site or '}}'."
-                )
-        expected = "OFFSET, CHANNELS, JOINT, End Site or }"
-        return self.text.failure(what, at=self.text.at - len(word), expected=expected, column=True)
+                what = f"{shown(word)} stands inside {where}. Write {items} there."
+        return self.text.failure(what, at=self.text.at - len(word), expected=items, column=True)
 
-    def joint(self, block: _Block) -> str:
-        return f"joint {named(self.found.names[block.joint])}"
+    def title(self, joint: int) -> str:
+        """A joint as errors call it."""
+        if self.found.ends[joint] == End.SITE:
+            return f"the End Site of joint {named(self.found.names[self.found.parents[joint]])}"
+        return f"joint {named(self.found.names[joint])}"
 
 
+_CONTROL = re.compile(rb"[\x00-\x1f\x7f]")
+_VECTOR = re.compile(rb"\s*+([^\s{}]++)\s++([^\s{}]++)\s++([^\s{}]++)")
 _WORDS = frozenset((b"", b"{", b"}", b"OFFSET", b"CHANNELS", b"JOINT", b"END", b"ROOT", b"MOTION"))
-_CHANNELS = {
-    f"{axis}{kind}".lower().encode(): f"{axis}{kind}" for kind in ("position", "rotation") for axis in "XYZ"
-}
-_PLACES = frozenset(name.encode() for name in POSITIONS)
-assert frozenset(_CHANNELS) == _PLACES | frozenset(name.encode() for name in ROTATIONS)

@@ -73,10 +73,11 @@ def _read_timing(text: Text) -> tuple[int, float]:
 
 
 def _frame_count(text: Text) -> int:
-    found = text.take_match(_FRAMES)
-    if found is None:
+    match = text.take_match(_FRAMES)
+    if match is None:
         what = f"MOTION is followed by {_next(text)}. Write 'Frames:' and the number of frames."
         raise text.failure(what, expected="Frames: <count>")
+    found = match[1]
     if not found.isdigit():
         what = shown(found) if found else "nothing"
         what = f"'Frames:' is followed by {what}. Write how many frames there are, a whole number."
@@ -87,12 +88,13 @@ def _frame_count(text: Text) -> int:
 
 
 def _frame_time(text: Text) -> float:
-    found = text.take_match(_FRAME_TIME)
-    if not found:
+    match = text.take_match(_FRAME_TIME)
+    if match is None or not match[1]:
         what = (
             f"the frame count is followed by {_next(text)}. Write 'Frame Time:' and the seconds of a frame."
         )
         raise text.failure(what, expected="Frame Time: <seconds>")
+    found = match[1]
     value = number(found)
     if value is None or value < 0:
         why = (

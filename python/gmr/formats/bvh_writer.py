@@ -82,7 +82,8 @@ def _in_file_order(layout: ChannelLayout, order: list[int], rows: NDArray[np.flo
 
 def _hierarchy(skeleton: Skeleton, layout: ChannelLayout, order: list[int]) -> bytes:
     offsets = _core.format_rows(skeleton.offsets).decode().splitlines()
-    parents = skeleton.parents.tolist()
+    parents, ends = skeleton.parents.tolist(), skeleton.ends.tolist()
+    site, tip = int(End.SITE), int(End.TIP)
     lines = ["HIERARCHY"]
     open_joints: list[int] = []
 
@@ -92,12 +93,14 @@ def _hierarchy(skeleton: Skeleton, layout: ChannelLayout, order: list[int]) -> b
             lines.append(_indent(len(open_joints)) + "}")
 
     for joint in order:
-        if skeleton.ends[joint] == End.TIP:
+        if ends[joint] == tip:
             continue
         close_to(parents[joint])
         tabs = _indent(len(open_joints))
-        lines += [tabs + _title(skeleton, joint), tabs + "{", f"{tabs}\tOFFSET {offsets[joint]}"]
-        if skeleton.ends[joint] == End.JOINT:
+        keyword = "End Site" if ends[joint] == site else "JOINT" if parents[joint] >= 0 else "ROOT"
+        name = "" if ends[joint] == site else skeleton.names[joint]
+        lines += [f"{tabs}{keyword} {name}".rstrip(" "), f"{tabs}{{", f"{tabs}\tOFFSET {offsets[joint]}"]
+        if ends[joint] != site:
             channels = layout.names[joint]
             lines.append(" ".join([f"{tabs}\tCHANNELS {len(channels)}", *channels]))
         open_joints.append(joint)
@@ -107,13 +110,6 @@ def _hierarchy(skeleton: Skeleton, layout: ChannelLayout, order: list[int]) -> b
 
 def _indent(depth: int) -> str:
     return "\t" * min(depth, _DEEPEST_INDENT)
-
-
-def _title(skeleton: Skeleton, joint: int) -> str:
-    if skeleton.ends[joint] == End.SITE:
-        return "End Site"
-    keyword = "ROOT" if skeleton.parents[joint] < 0 else "JOINT"
-    return f"{keyword} {skeleton.names[joint]}".rstrip()
 
 
 def _check_names(motion: Motion, order: list[int]) -> None:

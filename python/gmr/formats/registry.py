@@ -49,7 +49,7 @@ class Format:
         return [made] if isinstance(made, bytes) else made
 
 
-FORMATS: Final = (Format("BVH", (".bvh",), "HIERARCHY", "gmr.formats.bvh", "read_bvh", "write_bvh"),)
+FORMATS: Final = (Format("BVH", (".bvh",), "HIERARCHY", "gmr.formats.bvh", "read_bvh", "bvh_chunks"),)
 
 
 def suffixes() -> tuple[str, ...]:

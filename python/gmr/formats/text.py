@@ -86,13 +86,12 @@ class Text:
         self.at = match.end()
         return match[1].rstrip()
 
-    def take_match(self, pattern: re.Pattern[bytes]) -> bytes | None:
-        """The first group of ``pattern`` where it fits right here, else None."""
+    def take_match(self, pattern: re.Pattern[bytes]) -> re.Match[bytes] | None:
+        """The match of ``pattern`` right here, else None."""
         match = pattern.match(self.data, self.at)
-        if match is None:
-            return None
-        self.at = match.end()
-        return match[1]
+        if match is not None:
+            self.at = match.end()
+        return match
 
     def decoded(self, raw: bytes, what: str) -> str:
         """``raw`` as a string; bytes that are no UTF-8 are read as Latin-1, which is odd."""
