@@ -64,6 +64,114 @@ class Index:
             ValueError: when shapes do not fit or a query is not finite.
         """
 
+# --- matching ---
+
+def simulation_root(
+    positions: NDArray[np.float32],
+    hips: int,
+    across: list[tuple[int, int]],
+    position_window: int,
+    heading_window: int,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Ground positions (F, 2) and continuous headings (F,) of a body's smoothed root.
+
+    Args:
+        positions: (F, J, 3) world positions in metres, Y up, C-contiguous.
+        hips: joint whose projection is the position.
+        across: (left, right) joints whose directions are averaged.
+        position_window: frames that a smoothed position is fitted to.
+        heading_window: frames that a smoothed heading is fitted to.
+
+    Raises:
+        ValueError: a joint does not exist, or no frame shows a facing.
+    """
+
+def smooth(samples: NDArray[np.float64], window: int) -> NDArray[np.float64]:
+    """Cubic Savitzky-Golay filter, read from the end windows' own cubics at the ends."""
+
+class DatabaseBuilder:
+    """Collects clips of one skeleton, metres and Y up, then makes their database.
+
+    Args:
+        topology: J joints, S slots.
+        translated: the T joints with a translation in every frame.
+        groups: name, measure, joint, frames and weight of each feature group.
+        rate: frames a second.
+
+    Raises:
+        ValueError: a joint does not exist, a group is none, or a bone stands under no rotation.
+    """
+
+    def __init__(
+        self,
+        topology: Topology,
+        translated: list[int],
+        groups: list[tuple[str, str, int | None, list[int], float]],
+        rate: float,
+    ) -> None: ...
+    @property
+    def needed_frames(self) -> int:
+        """Frames that a clip must have to hold one candidate."""
+
+    def add_clip(
+        self,
+        positions: NDArray[np.float32],
+        rotations: NDArray[np.float64],
+        translations: NDArray[np.float64],
+        offsets: NDArray[np.float64],
+        ground: NDArray[np.float64],
+        heading: NDArray[np.float64],
+        tags: NDArray[np.uint32] | None = None,
+    ) -> int:
+        """Adds a clip of F frames; returns its index.
+
+        Args:
+            positions: (F, J, 3) in the world.
+            rotations: (F, S, 4) local, xyzw.
+            translations: (F, T, 3) a root's place in the world, another joint's vector in its slot's frame.
+            offsets: (J, 3) of this clip's skeleton.
+            ground: (F, 2) of its simulation root.
+            heading: (F,) of its simulation root, continuous.
+            tags: (F,) bits.
+
+        Raises:
+            ValueError: shapes do not fit, or a number is not finite; the builder is as it was.
+        """
+
+    def finish(self, offset: list[float] | None = None, scale: list[float] | None = None) -> Database:
+        """The database, scaled by itself or as given; the builder is then used up.
+
+        Raises:
+            ValueError: no clip holds a candidate, or the scale is of another schema.
+        """
+
+class Database:
+    """N rows; arrays are read-only and share its memory."""
+
+    features: NDArray[np.float32]
+    clips: NDArray[np.uint32]
+    candidates: NDArray[np.bool_]
+    tags: NDArray[np.uint32]
+    ground: NDArray[np.float64]
+    heading: NDArray[np.float64]
+    positions: NDArray[np.float32]
+    rotations: NDArray[np.float32]
+    translations: NDArray[np.float32]
+    displacements: NDArray[np.float32]
+    turns: NDArray[np.float32]
+    clip_ranges: list[tuple[int, int]]
+    normalization: tuple[list[float], list[float]]
+    constant_groups: list[int]
+    is_trajectory: list[bool]
+    rate: float
+    translated: list[int]
+    index: Index
+    def offsets(self, row: int) -> NDArray[np.float32]:
+        """(J, 3) of the skeleton of the clip that the row belongs to, metres."""
+
+    def normalize(self, raw: NDArray[np.float32]) -> NDArray[np.float32]:
+        """(Q, D) scaled features of (Q, D) raw numbers."""
+
 # --- numbers ---
 
 def parse_rows(

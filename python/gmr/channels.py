@@ -162,7 +162,8 @@ class ChannelLayout:
 
         One channel is left alone: a hinge stays a hinge when its motion is resampled.
         """
-        return replace(self, names=tuple(_completed(channels) for channels in self.names))
+        names = tuple(_completed(channels) for channels in self.names)
+        return self if names == self.names else replace(self, names=names)
 
     def fits(self, skeleton: Skeleton) -> bool:
         """Whether the slots that this layout numbers are the ones that turn the skeleton's bones."""

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use gmr_core::Topology;
 use gmr_core::matching::builder::{ClipPoses, DatabaseBuilder};
 use gmr_core::matching::database::Database;
 use gmr_core::matching::features::{Group, Measure, Schema};
@@ -17,6 +16,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::index::PyIndex;
+use crate::kinematics::PyTopology;
 
 type Root<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
 /// Name, measure, joint, frames, weight.
@@ -77,18 +77,15 @@ struct PyDatabaseBuilder(Option<DatabaseBuilder>);
 impl PyDatabaseBuilder {
     #[new]
     fn new(
-        parents: PyReadonlyArray1<'_, i32>,
-        slots: PyReadonlyArray1<'_, i32>,
-        slot_count: usize,
+        topology: &PyTopology,
         translated: Vec<i32>,
         groups: Vec<GroupParts>,
         rate: f64,
     ) -> PyResult<Self> {
-        let parents = contiguous("parents", parents.as_slice())?;
-        let topology = Topology::new(parents, contiguous("slots", slots.as_slice())?, slot_count);
+        let topology = topology.inner.clone();
         let groups = groups.into_iter().map(group_of).collect::<PyResult<_>>()?;
-        let schema = Schema::new(groups, parents.len()).map_err(refused)?;
-        let builder = DatabaseBuilder::new(topology.map_err(refused)?, translated, schema, rate);
+        let schema = Schema::new(groups, topology.joint_count()).map_err(refused)?;
+        let builder = DatabaseBuilder::new(topology, translated, schema, rate);
         Ok(Self(Some(builder.map_err(refused)?)))
     }
 

@@ -254,23 +254,30 @@ impl DatabaseBuilder {
 
     /// Positions, rotations and translations, turned from the world into the character's frame.
     fn add_poses(&mut self, clip: &ClipPoses<'_>) {
-        let (joints, slots) = (self.topology.joint_count(), self.topology.slot_count());
+        let widths =
+            [3 * self.topology.joint_count(), 4 * self.topology.slot_count(), 3 * self.translated.len()];
+        let is_root = |&joint: &i32| self.topology.parents()[joint as usize] == NONE;
+        let roots: Vec<bool> = self.translated.iter().map(is_root).collect();
+        let positions = grown(&mut self.rows.positions, clip.positions.len());
+        let rotations = grown(&mut self.rows.rotations, clip.rotations.len());
+        let translations = grown(&mut self.rows.translations, clip.translations.len());
         for frame in 0..clip.root.len() {
             let frame_of = CharacterFrame::new(clip.root.at(frame));
-            for p in clip.positions[frame * joints * 3..][..joints * 3].as_chunks::<3>().0 {
-                self.rows.positions.extend(frame_of.point(p.map(f64::from)));
+            let [joints, slots, moving] = widths.map(|width| frame * width..(frame + 1) * width);
+            let world = clip.positions[joints.clone()].as_chunks::<3>().0;
+            for (p, out) in world.iter().zip(positions[joints].as_chunks_mut::<3>().0) {
+                *out = frame_of.point(p.map(f64::from));
             }
-            let row = self.rows.rotations.len();
-            let rotations = &clip.rotations[frame * slots * 4..][..slots * 4];
-            self.rows.rotations.extend(rotations.iter().map(|&x| x as f32));
+            let (local, row) = (&clip.rotations[slots.clone()], &mut rotations[slots]);
+            local.iter().zip(&mut *row).for_each(|(&x, out)| *out = x as f32);
             for &slot in &self.world_slots {
-                let turned = frame_of.turn * DQuat::from_slice(&rotations[4 * slot..]);
-                turned.as_quat().write_to_slice(&mut self.rows.rotations[row + 4 * slot..]);
+                let turned = frame_of.turn * DQuat::from_slice(&local[4 * slot..]);
+                turned.as_quat().write_to_slice(&mut row[4 * slot..]);
             }
-            let translations = &clip.translations[frame * self.translated.len() * 3..];
-            for (t, &joint) in translations.as_chunks::<3>().0.iter().zip(&self.translated) {
-                let is_root = self.topology.parents()[joint as usize] == NONE;
-                self.rows.translations.extend(if is_root { frame_of.point(*t) } else { t.map(|x| x as f32) });
+            let bones = clip.translations[moving.clone()].as_chunks::<3>().0;
+            let row = translations[moving].as_chunks_mut::<3>().0;
+            for ((t, out), &is_root) in bones.iter().zip(row).zip(&roots) {
+                *out = if is_root { frame_of.point(*t) } else { t.map(|x| x as f32) };
             }
         }
     }
@@ -284,6 +291,13 @@ impl DatabaseBuilder {
             self.bone_sets.len() - 1
         }) as u32
     }
+}
+
+/// `values` with `more` zeros after them, and those zeros.
+fn grown(values: &mut Vec<f32>, more: usize) -> &mut [f32] {
+    let start = values.len();
+    values.resize(start + more, 0.0);
+    &mut values[start..]
 }
 
 /// A root's placement, ready to turn points and rotations into it.

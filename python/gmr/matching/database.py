@@ -1,0 +1,266 @@
+"""A motion database: the clips of a dataset at one rate, with the features that matching compares.
+
+Source: Holden et al., "Learned Motion Matching" (2020), Sec. 3; Clavet, "Motion Matching and The Road to
+Next-Gen Animation" (2016).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gmr import _core
+from gmr.arrays import read_only
+from gmr.errors import DatasetError
+from gmr.matching.assemble import Tags, assemble
+from gmr.matching.joints import Joints
+from gmr.matching.schema import LOCOMOTION, Schema
+from gmr.matching.survey import Survey, survey
+from gmr.motion import Motion
+from gmr.skeleton import Skeleton
+
+__all__ = ["Database", "Normalization"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Normalization:
+    """How raw features are scaled: ``feature = (raw - offset) / scale``."""
+
+    offset: NDArray[np.float32]
+    """(D,) mean of each number."""
+    scale: NDArray[np.float32]
+    """(D,) mean standard deviation of the number's group, over the group's weight."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Database:
+    """N frames of C clips, ready to be searched; immutable.
+
+    Rows are the frames of all clips, clip after clip, at :attr:`rate`. Lengths are metres; poses are seen
+    from the simulation root of their own frame: origin below the hips, Y up, +Z where the body faces, +X
+    to its left. Arrays are read-only and share the core's memory.
+    """
+
+    core: _core.Database
+    """The core's database, for :func:`gmr._core.run_trials`."""
+    schema: Schema
+    skeleton: Skeleton
+    """That of the first clip, in file units; names, parents and slots are those of all."""
+    joints: Joints
+    clip_names: tuple[str, ...]
+    """(C,) as given; a mirrored copy is "<name> (mirrored)" and follows its original."""
+    mirrored: NDArray[np.bool_]
+    """(C,) whether the clip is a mirrored copy."""
+    units: Mapping[str, float]
+    """Metres per file unit, by the name of the clip's original."""
+    notes: tuple[str, ...]
+    """What was guessed, converted or left out, in sentences."""
+    excluded: Mapping[str, str]
+    """Clips that could not be used, by name, and why."""
+    starts: NDArray[np.float64]
+    """(C,) second of its file at which each clip begins (not 0 where a converter's T-pose was left out)."""
+
+    @classmethod
+    def build(
+        cls,
+        motions: Iterable[Motion] | Mapping[str, Motion],
+        *,
+        mirror: bool = False,
+        schema: Schema = LOCOMOTION,
+        rate: float = 60.0,
+        names: Mapping[str, str | int] | None = None,
+        unit: float | str | None = None,
+        tags: Tags | None = None,
+        normalization: Normalization | None = None,
+    ) -> Database:
+        """The database of some clips.
+
+        Args:
+            motions: the clips, by name or with names of their own.
+            mirror: add the mirror image of each clip.
+            schema: the features.
+            rate: frames a second of the database.
+            names: joints by role where they are not found by themselves, such as ``{"left_foot": "foot_l"}``.
+            unit: metres per file unit (or "cm", ...) of motions that do not say; guessed from the body by
+            default.
+            tags: by a clip's name, bits of all its frames (one number) or of each (one number a frame).
+            normalization: that of another database with this schema, to compare with it; fitted by default.
+
+        Raises:
+            DatasetError: no clip is usable, the skeletons differ, or hips, legs or feet are not found.
+        """
+        if not 1 <= rate <= 1000:
+            raise DatasetError(f"a database cannot have {rate} frames a second; give 1 to 1000")
+        seen = survey(named(motions), schema.span + 1 / rate, names, unit)
+        assembly = assemble(seen, schema, rate, mirror, tags)
+        fitted = (normalization.offset, normalization.scale) if normalization else (None, None)
+        try:
+            core = assembly.builder.finish(*fitted)
+        except ValueError as error:
+            raise DatasetError(str(error)) from error
+        return cls(
+            core=core,
+            schema=schema,
+            skeleton=seen.skeleton,
+            joints=seen.joints,
+            clip_names=tuple(assembly.clip_names),
+            mirrored=read_only(np.array(assembly.mirrored, bool)),
+            units=seen.units,
+            notes=_notes(seen, schema, core),
+            excluded=assembly.excluded,
+            starts=read_only(np.array(assembly.starts)),
+        )
+
+    def __len__(self) -> int:
+        """N."""
+        return len(self.clips)
+
+    @property
+    def rate(self) -> float:
+        """Frames a second."""
+        return self.core.rate
+
+    @property
+    def features(self) -> NDArray[np.float32]:
+        """(N, D) scaled features; the sum of squared differences of two rows is the cost between them."""
+        return self.core.features
+
+    @cached_property
+    def clips(self) -> NDArray[np.int32]:
+        """(N,) index into :attr:`clip_names`."""
+        return read_only(self.core.clips.astype(np.int32))
+
+    @cached_property
+    def frames(self) -> NDArray[np.int32]:
+        """(N,) frame within the clip, at :attr:`rate`."""
+        counts = [np.arange(end - start, dtype=np.int32) for start, end in self.core.clip_ranges]
+        return read_only(np.concatenate(counts))
+
+    @cached_property
+    def seconds(self) -> NDArray[np.float64]:
+        """(N,) time in the clip's file."""
+        return read_only(self.starts[self.clips] + self.frames / self.rate)
+
+    @property
+    def candidates(self) -> NDArray[np.bool_]:
+        """(N,) whether a frame can be found: its clip holds all that its features look at."""
+        return self.core.candidates
+
+    @property
+    def tags(self) -> NDArray[np.uint32]:
+        """(N,) tag bits."""
+        return self.core.tags
+
+    @property
+    def normalization(self) -> Normalization:
+        """How features are scaled; fixed when the database is built."""
+        offset, scale = self.core.normalization
+        return Normalization(np.array(offset, np.float32), np.array(scale, np.float32))
+
+    @property
+    def is_trajectory(self) -> NDArray[np.bool_]:
+        """(D,) whether a number belongs to the path ahead, else to the pose."""
+        return np.array(self.core.is_trajectory, bool)
+
+    @property
+    def positions(self) -> NDArray[np.float32]:
+        """(N, J, 3) positions of all joints, metres, seen from the simulation root."""
+        return self.core.positions
+
+    @cached_property
+    def displacements(self) -> NDArray[np.float32]:
+        """(N, 2) the root's way to the next frame in its own frame: (left, forward), metres.
+
+        The last frame of a clip repeats the one before it.
+        """
+        return read_only(self.core.displacements)
+
+    @cached_property
+    def turns(self) -> NDArray[np.float32]:
+        """(N,) the root's turn to the next frame, radians, positive to the left; ends as in displacements."""
+        return read_only(self.core.turns)
+
+    @property
+    def ground(self) -> NDArray[np.float64]:
+        """(N, 2) the root's x and z in the world of its clip, metres."""
+        return self.core.ground
+
+    @property
+    def headings(self) -> NDArray[np.float64]:
+        """(N,) the root's heading in the world of its clip, radians, continuous within a clip."""
+        return self.core.heading
+
+    def clip_rows(self, clip: int | str) -> slice:
+        """The rows of a clip, by its index or name."""
+        index = self.clip_names.index(clip) if isinstance(clip, str) else clip
+        return slice(*self.core.clip_ranges[index])
+
+    def normalize(self, raw: ArrayLike) -> NDArray[np.float32]:
+        """Queries (Q, D) from raw numbers (Q, D) in metres and metres a second, in the schema's order."""
+        return self.core.normalize(_rows(raw, "raw features"))
+
+    def search(
+        self, queries: ArrayLike, k: int = 1, *, tags: int = 0, threads: int = 0
+    ) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+        """The nearest candidates of each query: exact, ties to the lowest row.
+
+        Args:
+            queries: (Q, D), or one of (D,), scaled as :attr:`features` are.
+            k: how many.
+            tags: bits that a frame must all carry.
+            threads: 0 means all cores; the answer is the same for every number.
+
+        Returns:
+            Costs (Q, k), the sums of squared differences, best first; rows of the database (Q, k), which
+            :attr:`clips` and :attr:`frames` translate. Where there are fewer candidates: inf and -1.
+
+        Raises:
+            ValueError: a query has another number of features, or one that is not finite.
+        """
+        bits = np.array([tags], np.uint32)
+        return self.core.index.search(_rows(queries, "queries"), k, bits, threads=threads)
+
+    def __repr__(self) -> str:
+        seconds = len(self) / self.rate
+        return (
+            f"Database({len(self.clip_names)} clips, {int(self.mirrored.sum())} of them mirrored, "
+            f"{len(self)} frames at {self.rate:g} fps = {seconds:.1f} s, {self.schema.dims} features)"
+        )
+
+
+def named(motions: Iterable[Motion] | Mapping[str, Motion]) -> dict[str, Motion]:
+    """Motions by name; those without one are called "motion 1", ..., and a name that repeats gets a
+    number."""
+    if isinstance(motions, Mapping):
+        return dict(motions)
+    if isinstance(motions, Motion):
+        raise DatasetError("a database is built of several motions: put this one into a list, [motion]")
+    found: dict[str, Motion] = {}
+    for number, motion in enumerate(motions, start=1):
+        name = base = motion.name or f"motion {number}"
+        again = 1
+        while name in found:
+            again += 1
+            name = f"{base} ({again})"
+        found[name] = motion
+    return found
+
+
+def _notes(seen: Survey, schema: Schema, core: _core.Database) -> tuple[str, ...]:
+    constant = [schema.groups[group].name for group in core.constant_groups]
+    scaled = [
+        f"Feature group '{name}' does not vary in this dataset and so cannot be scaled; it keeps its unit."
+        for name in constant
+    ]
+    return (*seen.notes, *scaled)
+
+
+def _rows(values: ArrayLike, what: str) -> NDArray[np.float32]:
+    rows = np.ascontiguousarray(values, np.float32)
+    if rows.ndim not in (1, 2):
+        raise ValueError(f"{what} must be (Q, D) or (D,), not {rows.shape}")
+    return rows.reshape(-1, rows.shape[-1])

@@ -1,0 +1,132 @@
+"""What poses are compared by, as data: groups of features, their times and weights."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from gmr.errors import DatasetError
+from gmr.skeleton import Skeleton
+
+__all__ = ["LOCOMOTION", "Group", "Measure", "Schema"]
+
+Measure = Literal["position", "velocity", "root_position", "root_facing"]
+
+_WIDTHS: Mapping[str, int] = {"position": 3, "velocity": 3, "root_position": 2, "root_facing": 2}
+_OF_JOINTS = ("position", "velocity")
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Features that are scaled together.
+
+    Args:
+        name: for tables and cost breakdowns.
+        measure: ``"position"`` or ``"velocity"`` of a joint (3 numbers: metres, metres a second), or
+            ``"root_position"`` or ``"root_facing"`` of the simulation root (2 numbers: x, z), all seen
+            from the simulation root of the frame that they describe.
+        joint: a role (``"left_foot"``), a joint's name or its index; None for the root.
+        times: seconds after the frame; negative: before.
+        weight: how much it counts once it is scaled to a mean standard deviation of 1; 0 or more.
+    """
+
+    name: str
+    measure: Measure
+    joint: str | int | None = None
+    times: tuple[float, ...] = (0.0,)
+    weight: float = 1.0
+
+    @property
+    def width(self) -> int:
+        """How many numbers it has."""
+        return _WIDTHS.get(self.measure, 0) * len(self.times)
+
+    def __post_init__(self) -> None:
+        if self.measure not in _WIDTHS:
+            raise DatasetError(
+                f"feature group '{self.name}' measures '{self.measure}'; use one of {', '.join(_WIDTHS)}"
+            )
+        if (self.joint is None) == (self.measure in _OF_JOINTS):
+            wanted = "needs a joint" if self.joint is None else "is about the root and takes no joint"
+            raise DatasetError(f"feature group '{self.name}' ({self.measure}) {wanted}")
+
+
+@dataclass(frozen=True, slots=True)
+class Schema:
+    """The feature groups of a database, in the order of their numbers."""
+
+    groups: tuple[Group, ...]
+
+    @property
+    def dims(self) -> int:
+        """D, how many numbers a frame has."""
+        return sum(group.width for group in self.groups)
+
+    @property
+    def span(self) -> float:
+        """Seconds from the earliest to the latest time that a frame's features look at."""
+        times = [0.0, *(time for group in self.groups for time in group.times)]
+        return max(times) - min(times)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """A name for each of the D numbers: ``"trajectory position +0.333 s x"``."""
+        return tuple(
+            f"{group.name}{f' {time:+.3f} s' if time else ''} {axis}"
+            for group in self.groups
+            for time in group.times
+            for axis in ("xyz" if group.measure in _OF_JOINTS else "xz")
+        )
+
+    def slices(self) -> dict[str, slice]:
+        """The columns of each group, by its name."""
+        found, start = {}, 0
+        for group in self.groups:
+            found[group.name] = slice(start, start + group.width)
+            start += group.width
+        return found
+
+    def resolve(
+        self, skeleton: Skeleton, roles: Mapping[str, int], rate: float
+    ) -> list[tuple[str, str, int | None, list[int], float]]:
+        """The groups as the core takes them: joints as indices, times as frames.
+
+        Args:
+            skeleton: whose joints are meant.
+            roles: the joint of each role that was found.
+            rate: frames a second.
+        """
+        return [
+            (
+                group.name,
+                group.measure,
+                None if group.joint is None else _joint(group, skeleton, roles),
+                [round(time * rate) for time in group.times],
+                group.weight,
+            )
+            for group in self.groups
+        ]
+
+
+def _joint(group: Group, skeleton: Skeleton, roles: Mapping[str, int]) -> int:
+    if isinstance(group.joint, str) and group.joint in roles:
+        return roles[group.joint]
+    assert group.joint is not None
+    return skeleton.index(group.joint)
+
+
+_AHEAD = (20 / 60, 40 / 60, 60 / 60)
+
+LOCOMOTION = Schema(
+    (
+        Group("left foot position", "position", "left_foot", weight=0.75),
+        Group("right foot position", "position", "right_foot", weight=0.75),
+        Group("left foot velocity", "velocity", "left_foot"),
+        Group("right foot velocity", "velocity", "right_foot"),
+        Group("hips velocity", "velocity", "hips"),
+        Group("trajectory position", "root_position", times=_AHEAD),
+        Group("trajectory facing", "root_facing", times=_AHEAD, weight=1.5),
+    )
+)
+"""The 27 numbers of Holden et al., "Learned Motion Matching" (2020), Sec. 3, with its weights."""

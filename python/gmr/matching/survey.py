@@ -1,0 +1,225 @@
+"""What a dataset is made of, decided for all its clips at once: one skeleton, its joints, up axis, units,
+root."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from gmr.errors import DatasetError
+from gmr.matching.body import Poses, leg_length, up_axis
+from gmr.matching.joints import Joints, find_joints
+from gmr.matching.prepare import guessed_unit, in_metres_upright, unit_text
+from gmr.matching.root import RootJoint, find_root_joint
+from gmr.motion import Motion
+from gmr.skeleton import Skeleton
+from gmr.tpose import has_leading_tpose
+from gmr.units import metres_per_unit
+
+__all__ = ["Survey", "listed", "survey"]
+
+_SAMPLES = 12
+"""Poses of each clip that decide on joints, up axis and unit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """The clips that can be used, and what holds for all of them."""
+
+    motions: Mapping[str, Motion]
+    """By name, without a converter's T-pose, else as read."""
+    skipped: Mapping[str, int]
+    """Frames left out at the beginning of a clip, where there are any."""
+    skeleton: Skeleton
+    """That of the first clip; names, parents and slots are those of all."""
+    joints: Joints
+    up: str
+    """The axis that is up in the files, such as ``"+Y"``."""
+    units: Mapping[str, float]
+    """Metres per file unit of each clip."""
+    root: RootJoint | None
+    """The joint that already is a simulation root, None where one is made."""
+    excluded: Mapping[str, str]
+    """Clips left out, by name, and why."""
+    notes: tuple[str, ...]
+    """What was guessed or done, in sentences."""
+
+
+def survey(
+    motions: Mapping[str, Motion],
+    shortest: float,
+    names: Mapping[str, str | int] | None = None,
+    unit: float | str | None = None,
+) -> Survey:
+    """Looks through the clips of a dataset.
+
+    Args:
+        motions: clips by name.
+        shortest: seconds that a clip must last.
+        names: joints by role, where the caller knows them; see :func:`gmr.matching.joints.find_joints`.
+        unit: metres per file unit (or "cm", ...) of clips that do not say; guessed from the body by default.
+
+    Raises:
+        DatasetError: no clip is usable, the clips have different skeletons, or the skeleton has no known
+        body.
+    """
+    usable, excluded = _usable(motions, shortest)
+    usable, skipped, notes = _without_tposes(usable)
+    usable = _on_one_skeleton(usable, excluded)
+    skeleton = next(iter(usable.values())).skeleton
+    sampled = {name: motion[:: max(1, motion.frame_count // _SAMPLES)] for name, motion in usable.items()}
+    poses = {name: np.asarray(motion.positions(dtype=np.float64)) for name, motion in sampled.items()}
+    pooled = _pooled(skeleton, poses.values())
+    joints = find_joints(skeleton, pooled, names)
+    up = up_axis(pooled, joints.roles)
+    units, unit_notes = _units(usable, poses, joints, unit)
+    upright = (in_metres_upright(motion, units[name], up) for name, motion in sampled.items())
+    root = find_root_joint(skeleton, joints, upright)
+    notes += _joint_notes(skeleton, joints, root) + unit_notes
+    if up != "+Y":
+        notes.append(f"The files have {up} up; they were turned to +Y.")
+    return Survey(usable, skipped, skeleton, joints, up, units, root, excluded, tuple(notes))
+
+
+def listed(names: Iterable[str], limit: int = 5) -> str:
+    """The first names in quotes, the rest as a count."""
+    every = list(names)
+    text = ", ".join(f"'{name}'" for name in every[:limit])
+    return text if len(every) <= limit else f"{text} and {len(every) - limit} more"
+
+
+def _usable(motions: Mapping[str, Motion], shortest: float) -> tuple[dict[str, Motion], dict[str, str]]:
+    """The clips that last long enough and hold finite numbers, and why the others are left out."""
+    excluded: dict[str, str] = {}
+    for name, motion in motions.items():
+        reason = _unusable(motion, shortest)
+        if reason is not None:
+            excluded[name] = reason
+    usable = {name: motion for name, motion in motions.items() if name not in excluded}
+    if not usable:
+        why = "; ".join(f"'{name}': {reason}" for name, reason in list(excluded.items())[:5])
+        raise DatasetError(f"there is no clip to evaluate ({why})" if why else "there is no motion at all")
+    return usable, excluded
+
+
+def _unusable(motion: Motion, shortest: float) -> str | None:
+    if motion.frame_time <= 0:
+        return "its frame time is 0; say how long a frame lasts"
+    seconds = max(motion.frame_count - 1, 0) * motion.frame_time
+    if seconds < shortest:
+        return (
+            f"it lasts {seconds:.2f} s, but a pose and the path ahead of it take {shortest:.2f} s: "
+            "no frame of it can be matched"
+        )
+    source = motion.source
+    values = source.values if hasattr(source, "values") else source.rotations
+    if not np.isfinite(values).all():
+        return "it holds numbers that are not finite"
+    return None
+
+
+def _without_tposes(
+    motions: dict[str, Motion],
+) -> tuple[dict[str, Motion], dict[str, int], list[str]]:
+    """The clips from where the recording begins, how many frames that skips, and a note that says so."""
+    skipped = {name: 1 for name, motion in motions.items() if has_leading_tpose(motion)}
+    if not skipped:
+        return motions, {}, []
+    note = (
+        f"Frame 0 of {len(skipped)} of {len(motions)} clips is a T-pose that a converter added (whole-number "
+        f"angles, then a jump of the whole body); it was left out ({listed(skipped, 3)})."
+    )
+    return {name: motion[skipped.get(name, 0) :] for name, motion in motions.items()}, skipped, [note]
+
+
+def _on_one_skeleton(motions: dict[str, Motion], excluded: dict[str, str]) -> dict[str, Motion]:
+    """The clips of the skeleton that most of the recorded time has; the others join ``excluded``.
+
+    Raises:
+        DatasetError: no skeleton has more than half of the time.
+    """
+    kinds: dict[tuple[object, ...], list[str]] = {}
+    for name, motion in motions.items():
+        skeleton = motion.skeleton
+        kind = (skeleton.names, skeleton.parents.tobytes(), skeleton.slots.tobytes())
+        kinds.setdefault(kind, []).append(name)
+    if len(kinds) == 1:
+        return motions
+    seconds = {kind: sum(motions[name].duration for name in clips) for kind, clips in kinds.items()}
+    main = max(seconds, key=lambda kind: seconds[kind])
+    usual = motions[kinds[main][0]].skeleton
+    others = [name for kind, clips in kinds.items() if kind != main for name in clips]
+    if seconds[main] <= 0.5 * sum(seconds.values()):
+        groups = "; ".join(f"{listed(clips, 3)}" for clips in kinds.values())
+        raise DatasetError(
+            f"the clips have {len(kinds)} different skeletons ({groups}), none with more than half of the "
+            "time. Evaluate the clips of one skeleton at a time."
+        )
+    for name in others:
+        excluded[name] = (
+            f"its skeleton is not that of the other clips: {_difference(usual, motions[name].skeleton)}"
+        )
+    return {name: motions[name] for name in kinds[main]}
+
+
+def _difference(usual: Skeleton, odd: Skeleton) -> str:
+    lacking = [name for name in usual.names if name not in odd.names]
+    added = [name for name in odd.names if name not in usual.names]
+    if lacking or added:
+        parts = [f"it lacks {listed(lacking, 3)}"] if lacking else []
+        return " and ".join(parts + ([f"it has {listed(added, 3)} besides"] if added else []))
+    return "the joints are in another order or hang on other parents"
+
+
+def _pooled(skeleton: Skeleton, poses: Iterable[Poses]) -> Poses:
+    """Poses of all clips together, each clip scaled by its median bone, for files may differ in unit."""
+    inner = np.flatnonzero(skeleton.parents >= 0)
+    scaled = []
+    for clip in poses:
+        bones = np.linalg.norm(clip[:, inner] - clip[:, skeleton.parents[inner]], axis=2).mean(axis=0)
+        proper = bones[bones > 1e-9]
+        scaled.append(clip / (np.median(proper) if proper.size else 1.0))
+    return np.concatenate(scaled)
+
+
+def _units(
+    motions: Mapping[str, Motion],
+    poses: Mapping[str, Poses],
+    joints: Joints,
+    unit: float | str | None,
+) -> tuple[dict[str, float], list[str]]:
+    """Metres per file unit of each clip: what it says, else what the caller says, else a guess, which is
+    noted."""
+    given = None if unit is None else metres_per_unit(unit)
+    units: dict[str, float] = {}
+    guesses: dict[float, list[tuple[str, float]]] = {}
+    for name, motion in motions.items():
+        known = motion.unit or given
+        if known is None:
+            leg = leg_length(motion.skeleton, poses[name], joints.roles)
+            known, stature = guessed_unit(leg)
+            guesses.setdefault(known, []).append((name, stature))
+        units[name] = known
+    notes = [
+        f"Unit guessed from the length of the legs: {unit_text(metres)}, which makes the body about "
+        f"{np.median([stature for _, stature in clips]):.2f} m tall"
+        + (f" (for {listed([name for name, _ in clips])})" if len(guesses) > 1 else "")
+        + "; say unit=... if it is another."
+        for metres, clips in guesses.items()
+    ]
+    return units, notes
+
+
+def _joint_notes(skeleton: Skeleton, joints: Joints, root: RootJoint | None) -> list[str]:
+    notes = []
+    if joints.found_by == "shape":
+        named = ", ".join(f"{role} '{name}'" for role, name in joints.described(skeleton).items())
+        notes.append(f"The joints' names are not known; the body's shape gave {named}.")
+    if root is not None:
+        name = skeleton.names[root.joint]
+        notes.append(
+            f"Joint '{name}' lies on the ground and goes with the body: it is used as the simulation root."
+        )
+    return notes
