@@ -1,5 +1,6 @@
 """The extension module: kernels over plain arrays."""
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -327,4 +328,55 @@ def forward_kinematics_euler(
         rotation_axes: (S, 3) as in :func:`euler_to_quaternions`.
         translation_columns: (T, 3) columns of x, y, z of each translated joint; -1: the offset's component.
         adds_offset: whether these columns are added to the offset (else they replace it).
+    """
+
+# --- trial ---
+
+def run_trials(
+    database: Database,
+    profiles: Sequence[tuple[Sequence[tuple[float, float, float]], float]],
+    tracking: str,
+    search_every: float,
+    exclude_within: int,
+    transition_penalty: float,
+    tags: int,
+    threads: int,
+    progress: Callable[[int, int], object] | None = None,
+) -> dict[str, NDArray[Any]]:
+    """Trials along reference paths; Ctrl-C ends them.
+
+    Args:
+        profiles: one a trial: its ``(duration s, speed m/s, turn rate rad/s)`` and the second from which it
+            counts.
+        tracking: "time" or "velocity".
+        progress: called now and then with the number of trials done and of all; what it raises ends the run.
+
+    Returns:
+        Columns ``lengths`` and ``recorded_from`` (trials,), and (trials, steps): ``x z heading ref_x ref_z
+        ref_heading ref_speed ref_turn_rate cost_pose cost_trajectory discontinuity row status``; after the
+        end of a trial NaN, row -1, status 255.
+
+    Raises:
+        ValueError: when a profile or setting is out of bounds, or no candidate carries the tags.
+    """
+
+# --- playback ---
+
+def trial_positions(
+    database: Database,
+    rows: NDArray[np.int64],
+    placements: NDArray[np.float64],
+    half_life: float,
+    joints: Sequence[int] | None = None,
+) -> NDArray[np.float32]:
+    """World positions (T, K, 3) of what a trial shows, metres, every jump inertialised.
+
+    Args:
+        rows: (T,) database row of each step; a jump is where one is not the next of its clip.
+        placements: (T, 3) x, z and heading of the root at each step.
+        half_life: of the offsets, seconds.
+        joints: the K joints asked for; all where left out.
+
+    Raises:
+        ValueError: when lengths do not fit, or a row or joint is not there.
     """

@@ -237,14 +237,19 @@ impl<'a> Controller<'a> {
 
     /// The candidate of the lowest trajectory cost, the first of equals.
     fn nearest_by_trajectory(&self) -> Option<u32> {
+        let dims: Vec<usize> = (0..self.query.len()).filter(|&dim| self.is_trajectory[dim]).collect();
         let (mut nearest, mut lowest) = (None, f32::INFINITY);
         for row in 0..self.database.row_count() as u32 {
             let tagged = self.database.tags()[row as usize] & self.settings.tags == self.settings.tags;
-            if self.database.candidates()[row as usize] && tagged {
-                let cost = self.costs(row).1;
-                if nearest.is_none() || cost < lowest {
-                    (nearest, lowest) = (Some(row), cost);
-                }
+            if !(self.database.candidates()[row as usize] && tagged) {
+                continue;
+            }
+            let features = self.database.feature_row(row);
+            let mut terms = dims.iter().map(|&dim| (self.query[dim] - features[dim]).powi(2));
+            // Terms are never negative: a sum that has reached the lowest stays there.
+            let cost = terms.try_fold(0.0, |sum, term| (sum < lowest).then_some(sum + term));
+            if let Some(cost) = cost.filter(|&cost| cost < lowest) {
+                (nearest, lowest) = (Some(row), cost);
             }
         }
         nearest
