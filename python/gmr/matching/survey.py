@@ -57,17 +57,18 @@ def survey(
 
     Args:
         motions: clips by name.
-        shortest: seconds that a clip must last.
+        shortest: seconds that a clip must last for a frame of it to be matched.
         names: joints by role, where the caller knows them; see :func:`gmr.matching.joints.find_joints`.
         unit: metres per file unit (or "cm", ...) of clips that do not say; guessed from the body by default.
 
     Raises:
-        DatasetError: no clip is usable, the clips have different skeletons, or the skeleton has no known
-        body.
+        DatasetError: no clip is usable or long enough, the clips have different skeletons, or the skeleton
+        has no known body.
     """
-    usable, excluded = _usable(motions, shortest)
+    usable, excluded = _usable(motions)
     usable, skipped, notes = _without_tposes(usable)
     usable = _on_one_skeleton(usable, excluded)
+    notes += _short_notes(usable, shortest)
     skeleton = next(iter(usable.values())).skeleton
     sampled = {name: motion[:: max(1, motion.frame_count // _SAMPLES)] for name, motion in usable.items()}
     poses = {name: np.asarray(motion.positions(dtype=np.float64)) for name, motion in sampled.items()}
@@ -90,11 +91,11 @@ def listed(names: Iterable[str], limit: int = 5) -> str:
     return text if len(every) <= limit else f"{text} and {len(every) - limit} more"
 
 
-def _usable(motions: Mapping[str, Motion], shortest: float) -> tuple[dict[str, Motion], dict[str, str]]:
-    """The clips that last long enough and hold finite numbers, and why the others are left out."""
+def _usable(motions: Mapping[str, Motion]) -> tuple[dict[str, Motion], dict[str, str]]:
+    """The clips that move and hold finite numbers, and why the others are left out."""
     excluded: dict[str, str] = {}
     for name, motion in motions.items():
-        reason = _unusable(motion, shortest)
+        reason = _unusable(motion)
         if reason is not None:
             excluded[name] = reason
     usable = {name: motion for name, motion in motions.items() if name not in excluded}
@@ -104,20 +105,38 @@ def _usable(motions: Mapping[str, Motion], shortest: float) -> tuple[dict[str, M
     return usable, excluded
 
 
-def _unusable(motion: Motion, shortest: float) -> str | None:
+def _unusable(motion: Motion) -> str | None:
     if motion.frame_time <= 0:
         return "its frame time is 0; say how long a frame lasts"
-    seconds = max(motion.frame_count - 1, 0) * motion.frame_time
-    if seconds < shortest:
-        return (
-            f"it lasts {seconds:.2f} s, but a pose and the path ahead of it take {shortest:.2f} s: "
-            "no frame of it can be matched"
-        )
+    if motion.frame_count < 2:
+        return "it is a pose, not a movement: a clip has at least 2 frames"
     source = motion.source
     values = source.values if hasattr(source, "values") else source.rotations
     if not np.isfinite(values).all():
         return "it holds numbers that are not finite"
     return None
+
+
+def _short_notes(motions: Mapping[str, Motion], shortest: float) -> list[str]:
+    """Names the clips that are too short to be matched; their frames count for coverage all the same.
+
+    Raises:
+        DatasetError: all of them are.
+    """
+    seconds = {name: (motion.frame_count - 1) * motion.frame_time for name, motion in motions.items()}
+    short = [name for name in motions if seconds[name] < shortest]
+    if len(short) == len(motions):
+        longest = max(short, key=lambda name: seconds[name])
+        raise DatasetError(
+            f"no clip lasts the {shortest:.2f} s of a pose and the path ahead of it, so no frame can be "
+            f"matched; the longest, '{longest}', lasts {seconds[longest]:.2f} s. Give longer takes"
+        )
+    if not short:
+        return []
+    return [
+        f"Shorter than the {shortest:.2f} s of a pose and the path ahead of it, and so counted for coverage but "
+        f"never matched: {len(short)} of {len(motions)} clips ({listed(short, 3)})."
+    ]
 
 
 def _without_tposes(
