@@ -1,1 +1,71 @@
-"""figures."""
+"""The figures of an evaluation, each a Vega-Lite chart with one computed sentence that reads it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from gmr.errors import MissingExtraError
+from gmr.evaluation.figures.clip_circles import clip_circles
+from gmr.evaluation.figures.clip_usage import clip_usage
+from gmr.evaluation.figures.coverage_density import coverage_density
+from gmr.evaluation.figures.coverage_scatter import coverage_scatter
+from gmr.evaluation.figures.figure import Figure
+from gmr.evaluation.figures.frame_usage import frame_usage
+from gmr.evaluation.figures.holds_map import holds_map
+from gmr.evaluation.figures.measures import MEASURES
+from gmr.evaluation.figures.transition_kinds import transition_kinds
+from gmr.evaluation.figures.transition_matrix import transition_matrix
+from gmr.evaluation.figures.trial_maps import trial_map, trial_sets
+from gmr.evaluation.result import Evaluation
+from gmr.replacing import replacing
+
+__all__ = ["Figure", "figures", "svg"]
+
+
+def figures(evaluation: Evaluation) -> Iterator[Figure]:
+    """Every figure of the report, in its order."""
+    yield coverage_scatter(evaluation)
+    yield coverage_density(evaluation)
+    for scenario, tracking in trial_sets(evaluation):
+        yield holds_map(evaluation, scenario, tracking)
+        for measure in MEASURES:
+            yield trial_map(evaluation, measure, scenario, tracking)
+    yield clip_usage(evaluation)
+    yield frame_usage(evaluation)
+    yield transition_kinds(evaluation)
+    yield transition_matrix(evaluation)
+    yield clip_circles(evaluation)
+
+
+def svg(evaluation: Evaluation, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+    """Write every printable figure as SVG: all of the files, or none of them.
+
+    The coverage scatter is left out: it takes half a kilobyte a point, and in print the density says more.
+
+    Args:
+        evaluation: what to draw.
+        folder: where to; made where it is missing.
+
+    Returns:
+        The files written, ``<figure>.svg`` each.
+
+    Raises:
+        MissingExtraError: vl-convert-python is not installed.
+        OSError: the folder may not be written to, or the disk is full.
+    """
+    try:
+        import vl_convert
+    except ImportError as error:
+        raise MissingExtraError("vl-convert-python", "report", "Writing figures as SVG") from error
+    drawn = {
+        Path(folder) / f"{figure.name}.svg": vl_convert.vegalite_to_svg(figure.description())
+        for figure in figures(evaluation)
+        if figure.printable
+    }
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    with replacing(*drawn) as files:
+        for file, text in zip(files, drawn.values(), strict=True):
+            file.write(text.encode())
+    return tuple(drawn)

@@ -1,0 +1,131 @@
+"""Coverage, one point a window: which clip moves at which speed and turn rate (paper's Figure 1)."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+
+from gmr.evaluation.figures.figure import Figure
+from gmr.evaluation.figures.theme import turn_ticks
+from gmr.evaluation.result import Evaluation
+from gmr.evaluation.table import Table
+from gmr.evaluation.words import count, percent
+
+__all__ = ["coverage_scatter"]
+
+_MOST_POINTS: Final = 24_000
+"""More are slow to draw on a phone, and hide one another."""
+_COLOURS: Final = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8a6fd1"]
+"""After Okabe and Ito: told apart by colour-blind readers too, on white and on black."""
+_SHAPES: Final = ["circle", "square", "triangle-up", "diamond", "cross"]
+
+
+def coverage_scatter(evaluation: Evaluation) -> Figure:
+    """Every 1-s window of every clip, in speed and turn rate, coloured by clip.
+
+    With more windows than can be drawn every n-th is, and the sentence says so.
+    """
+    windows = evaluation.measured.coverage
+    step = -(-len(windows) // _MOST_POINTS)
+    shown = windows.take(np.arange(0, len(windows), max(step, 1)))
+    clips, number = np.unique(shown["clip"].astype(str), return_inverse=True)
+    points = Table(
+        {
+            "clip": shown["clip"],
+            "time": shown["seconds"],
+            "speed": shown["speed"],
+            "turn_rate_deg": shown["turn_rate_deg"],
+            "colour": number % len(_COLOURS),
+            "shape": number // len(_COLOURS) % len(_SHAPES),
+        }
+    )
+    return Figure(
+        name="coverage_scatter",
+        title="Speed and turn rate of every second of motion, by clip",
+        sentence=_sentence(windows, len(clips), step),
+        chart=_chart(points),
+        data={"windows": points, "chosen": points.take(np.arange(0))},
+        printable=False,
+    )
+
+
+def _sentence(windows: Table, clip_count: int, step: int) -> str:
+    if len(windows) == 0:
+        return "No clip is long enough for a single window of one second."
+    speed, turn = windows["speed"], np.abs(windows["turn_rate_deg"])
+    usual = np.percentile(speed, [5, 95])
+    parts = [
+        f"Nine tenths of the motion of {count(clip_count, 'clip')} lies between {usual[0]:.1f} and "
+        f"{usual[1]:.1f} m/s; {percent(float(np.mean(turn > 25)))} of it turns faster than 25 degrees/s, "
+        f"{percent(float(np.mean(turn > 75)))} faster than 75 degrees/s.",
+    ]
+    if step > 1:
+        parts.append(f"One window in {step} of the {len(windows):,} is drawn.")
+    return " ".join(parts)
+
+
+def _chart(points: Table) -> dict[str, Any]:
+    turn = float(np.abs(points["turn_rate_deg"]).max(initial=25.0))
+    speed = float(points["speed"].max(initial=1.0))
+    place = {
+        "x": {
+            "field": "turn_rate_deg",
+            "type": "quantitative",
+            "title": "Turn rate, deg/s (left is positive)",
+            "scale": {"domain": [-turn, turn], "nice": False, "padding": 4},
+            "axis": {"values": turn_ticks(turn)},
+        },
+        "y": {
+            "field": "speed",
+            "type": "quantitative",
+            "title": "Speed, m/s",
+            "scale": {"domain": [0.0, speed], "nice": True},
+        },
+    }
+    by_clip = {
+        "color": {
+            "condition": {"test": "dimmed", "value": "#8b939c"},
+            "field": "colour",
+            "type": "nominal",
+            "scale": {"domain": list(range(len(_COLOURS))), "range": _COLOURS},
+            "legend": None,
+        },
+        "shape": {
+            "field": "shape",
+            "type": "nominal",
+            "scale": {"domain": list(range(len(_SHAPES))), "range": _SHAPES},
+            "legend": None,
+        },
+        "opacity": {"condition": {"test": "dimmed", "value": 0.12}, "value": 0.55},
+    }
+    return {
+        "width": "container",
+        "height": 420,
+        "params": [{"name": "dimmed", "value": False}],
+        # The points are pixels, for thousands of SVG elements are slow; pixels cannot follow CSS colours, so
+        # the axes take a grey that reads on white and on black.
+        "usermeta": {"renderer": "canvas", "hover": "windows"},
+        "layer": [
+            {
+                "data": {"name": "windows"},
+                "mark": {"type": "point", "filled": True, "size": 12, "aria": False},
+                "encoding": {**place, **by_clip},
+            },
+            {
+                "data": {"name": "chosen"},
+                "mark": {
+                    "type": "point",
+                    "filled": True,
+                    "size": 26,
+                    "color": "#d55e00",
+                    "opacity": 0.9,
+                    "aria": False,
+                },
+                "encoding": place,
+            },
+        ],
+        "config": {
+            "axis": {"labelColor": "#7a828b", "titleColor": "#7a828b", "gridColor": "rgba(128,136,144,0.25)"}
+        },
+    }

@@ -1,0 +1,108 @@
+"""Where on the grid the dataset holds, and what goes most wrong where it does not: the verdict as a map."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.evaluation.figures.figure import Figure
+from gmr.evaluation.figures.trial_maps import HOVER, place, trials_of
+from gmr.evaluation.regions import Grid, Limits
+from gmr.evaluation.result import Evaluation
+from gmr.evaluation.table import Table
+from gmr.evaluation.words import count, listing, percent
+
+__all__ = ["holds_map"]
+
+_OUTCOMES: Final = ("holds", "strays from the path", "wrong speed", "wrong turn rate")
+_COLOURS: Final = ("holds", "strays", "wrong-speed", "wrong-turn")
+_MARKS: Final = ("✓", "path", "speed", "turn")
+
+
+def holds_map(evaluation: Evaluation, scenario: str, tracking: str) -> Figure:
+    """Every trial as held, or as failed by the limit that it exceeds most."""
+    trials = trials_of(evaluation, scenario, tracking)
+    grid = Grid.of(trials, evaluation.measured.coverage, Limits())
+    row = np.searchsorted(grid.speeds, trials["speed"])
+    column = np.searchsorted(grid.turn_rates_deg, trials["turn_rate_deg"])
+    outcome = _outcomes(grid, timed=tracking == "time")[row, column]
+    drawn = Table(
+        {
+            **{name: trials[name] for name in ("speed", "turn_rate_deg", *HOVER)},
+            "outcome": np.array(_OUTCOMES, object)[outcome],
+            "mark": np.array(_MARKS, object)[outcome],
+        }
+    )
+    return Figure(
+        name="trial_map_holds" + ("" if tracking == "time" else f"_{tracking}"),
+        title="Where it does what it is asked",
+        sentence=_sentence(outcome, grid.limits, timed=tracking == "time"),
+        chart=_chart(len(grid.speeds)),
+        data={"trials": drawn},
+    )
+
+
+def _outcomes(grid: Grid, *, timed: bool) -> NDArray[np.int64]:
+    """(V, W) index of the outcome: 0 where it holds, else the limit exceeded by the largest factor."""
+    limits = grid.limits
+    excess = np.stack(
+        [
+            grid.offset / limits.offset if timed else np.zeros_like(grid.offset),
+            np.abs(grid.speed_error) / (limits.speed * grid.speeds[:, None]),
+            np.abs(grid.turn_rate_error_deg) / limits.turn_rate_deg,
+        ]
+    )
+    return np.where(grid.held, 0, 1 + np.argmax(np.nan_to_num(excess), axis=0))
+
+
+def _sentence(outcome: NDArray[np.int64], limits: Limits, *, timed: bool) -> str:
+    number = np.bincount(outcome, minlength=len(_OUTCOMES))
+    failed = [f"{number[kind]} by {what}" for kind, what in ((1, "straying"), (2, "speed"), (3, "turn rate"))]
+    path = [f"within {limits.offset:g} m of the plan"] if timed else []
+    within = [
+        *path,
+        f"within {percent(limits.speed)} of the speed",
+        f"within {limits.turn_rate_deg:g} degrees/s of the turn rate",
+    ]
+    told = [text for text, kind in zip(failed, (1, 2, 3), strict=True) if number[kind]]
+    return f"{count(int(number[0]), 'trial holds', 'trials hold')}: on average {listing(within)}. " + (
+        f"Of the others, {listing(told)}, by the limit that is exceeded most." if told else "None fails."
+    )
+
+
+def _chart(rows: int) -> dict[str, Any]:
+    def colour(prefix: str, legend: dict[str, Any] | None) -> dict[str, Any]:
+        return {
+            "field": "outcome",
+            "type": "nominal",
+            "scale": {
+                "domain": list(_OUTCOMES),
+                "range": [f"var(--{prefix}{colour}-0)" for colour in _COLOURS],
+            },
+            "legend": legend,
+        }
+
+    legend = {"title": None, "columns": {"expr": "windowSize()[0] < 600 ? 2 : 4"}}
+    return {
+        "width": "container",
+        "height": max(44 * rows, 60),
+        "data": {"name": "trials"},
+        "resolve": {"scale": {"color": "independent"}},
+        "encoding": place(),
+        "layer": [
+            {
+                "mark": {"type": "rect", "stroke": "var(--page)", "strokeWidth": 2, "aria": False},
+                "encoding": {"color": colour("", legend)},
+            },
+            {
+                "mark": {
+                    "type": "text",
+                    "fontSize": {"expr": "windowSize()[0] < 600 ? 8 : 12"},
+                    "aria": False,
+                },
+                "encoding": {"text": {"field": "mark", "type": "nominal"}, "color": colour("on-", None)},
+            },
+        ],
+    }

@@ -1,0 +1,98 @@
+"""The worst trial as the page's player needs it: poses about the character's place, quantised to 16 bits."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.evaluation.figures.wording import asked, metres, short_names
+from gmr.evaluation.report.columns import packed_array
+from gmr.evaluation.result import Replay
+
+__all__ = ["packed_replay", "replay_sentence", "sides"]
+
+_MOST_BYTES: Final = 450_000
+"""Of poses; a replay that takes more keeps every second, third ... step, and the player fills in between."""
+_LEFT: Final = re.compile(
+    r"left|(^|[\W_])l([\W_]|$)|^l(?=[A-Z]|hip|fem|tib|foot|toe|hand|wri|rad|hum|cla|thu|fin)"
+)
+_RIGHT: Final = re.compile(
+    r"right|(^|[\W_])r([\W_]|$)|^r(?=[A-Z]|hip|fem|tib|foot|toe|hand|wri|rad|hum|cla|thu|fin)"
+)
+
+
+def packed_replay(replay: Replay) -> dict[str, Any]:
+    """The replay for the page's JSON.
+
+    Positions are int16, in units of ``unit`` metres, and horizontally relative to the path: 0.1 mm or better
+    wherever on the ground the trial goes.
+    """
+    steps, joints, _ = replay.positions.shape
+    stride = max(1, -(-steps * joints * 6 // _MOST_BYTES))
+    about = replay.positions[::stride].astype(np.float64)
+    about[..., 0] -= replay.path[::stride, None, 0]
+    about[..., 2] -= replay.path[::stride, None, 1]
+    used, clip = np.unique(replay.clip, return_inverse=True)
+    unit = float(np.abs(about).max(initial=1e-3)) / 32767
+    return {
+        "rate": replay.rate / stride,
+        "steps": len(about),
+        "joints": joints,
+        "unit": unit,
+        "positions": packed_array(np.rint(about / unit).astype(np.int16)),
+        "parents": replay.parents.tolist(),
+        "sides": sides(replay.joint_names),
+        "head": _head(replay),
+        "path": packed_array(replay.path[::stride].astype(np.float32)),
+        "reference": packed_array(replay.reference[::stride].astype(np.float32)),
+        "offset": packed_array(replay.offset[::stride].astype(np.float32)),
+        "clip": packed_array(clip[::stride].astype(np.uint16)),
+        "clips": short_names([replay.clip_names[number] for number in used.tolist()]),
+        "seconds": packed_array((replay.frame[::stride] / replay.rate).astype(np.float32)),
+        "jumped": packed_array(_any_of_stride(replay.jumped, stride).astype(np.uint8)),
+    }
+
+
+def replay_sentence(replay: Replay) -> str:
+    """What the replay shows, in words."""
+    worst = int(np.argmax(replay.offset))
+    return (
+        f"Asked for {asked(replay.speed, replay.turn_rate_deg)}, the character is farthest from its plan, "
+        f"{metres(float(replay.offset[worst]))}, after {worst / replay.rate:.0f} of "
+        f"{len(replay.offset) / replay.rate:.0f} seconds. "
+        f"It jumps {int(replay.jumped.sum()):,} times between {len(np.unique(replay.clip)):,} clips."
+    )
+
+
+def sides(names: tuple[str, ...]) -> list[int]:
+    """1 for a joint of the left side, 2 of the right, 0 of neither, from its name."""
+    return [_side(name) for name in names]
+
+
+def _side(name: str) -> int:
+    short = name.rpartition(":")[2]
+    for side, pattern in ((1, _LEFT), (2, _RIGHT)):
+        if pattern.search(short) or pattern.search(short.lower()):
+            return side
+    return 0
+
+
+def _head(replay: Replay) -> list[int]:
+    """The joint of the head and its highest child, between which a head is drawn; [] without such a name."""
+    heads = [place for place, name in enumerate(replay.joint_names) if re.search("head", name, re.IGNORECASE)]
+    if not heads or len(replay.positions) == 0:
+        return []
+    head = heads[0]
+    children = np.flatnonzero(replay.parents == head)
+    if len(children) == 0:
+        return [head, head]
+    return [head, int(children[np.argmax(replay.positions[0, children, 1])])]
+
+
+def _any_of_stride(jumped: NDArray[np.bool_], stride: int) -> NDArray[np.bool_]:
+    padded = np.zeros(-(-len(jumped) // stride) * stride, bool)
+    padded[: len(jumped)] = jumped
+    return np.asarray(padded.reshape(-1, stride).any(axis=1))

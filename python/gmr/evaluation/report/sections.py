@@ -1,0 +1,259 @@
+"""The sections of the page in reading order: words first, then figures, then tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from gmr.evaluation.figures import Figure
+from gmr.evaluation.figures.clip_usage import never_played, recordings
+from gmr.evaluation.figures.measures import MEASURES
+from gmr.evaluation.figures.transition_matrix import flows
+from gmr.evaluation.report.document import element, items, own, text
+from gmr.evaluation.report.method import SOURCE, terms
+from gmr.evaluation.report.replay import replay_sentence
+from gmr.evaluation.report.tables import Column, clip_columns, flow_columns, html_table, trial_columns
+from gmr.evaluation.result import Evaluation, Summary
+from gmr.evaluation.words import count, duration
+
+__all__ = ["clip_groups", "facts", "sections"]
+
+_MOST_PLAYED: Final = 10
+
+
+def facts(summary: Summary) -> str:
+    """The dataset in figures, as terms and descriptions."""
+    shown = {
+        "Clips": f"{summary.clip_count:,}",
+        "Mirrored copies": f"{summary.mirrored_count:,}" if summary.mirrored_count else None,
+        "Duration": duration(summary.seconds),
+        f"Frames at {summary.rate:g} Hz": f"{summary.frame_count:,}",
+        "Joints": f"{summary.joint_count:,}",
+    }
+    return "\n".join(_term(name, value) for name, value in shown.items() if value is not None)
+
+
+def _term(name: str, value: str) -> str:
+    return element("div", element("dt", text(name)) + element("dd", text(value)))
+
+
+def sections(evaluation: Evaluation, figures: Sequence[Figure]) -> str:
+    """The body of the page."""
+    drawn = {figure.name: figure for figure in figures}
+    maps = [figure for figure in figures if figure.name.startswith("trial_map_")]
+    parts = [
+        _verdict(evaluation),
+        _failed(evaluation.failed),
+        _notes(evaluation.notes),
+        _section(
+            "coverage",
+            "What the dataset holds",
+            "Speed and turn rate, as means over one second that slides through every clip.",
+            _scatter(drawn["coverage_scatter"], evaluation) + _figure(drawn["coverage_density"]),
+        ),
+        _section(
+            "accuracy",
+            "How well it follows a path",
+            "In every trial a character driven by motion matching is sent along a circle, or straight ahead, "
+            "at one speed and one turn rate. A cell is a trial; what stands after ± is its spread over time.",
+            _maps(maps, evaluation),
+        ),
+        _section(
+            "relevance",
+            "Which clips carry it",
+            "",
+            _figure(drawn["clip_usage"]) + _never(evaluation) + _figure(drawn["frame_usage"]),
+        ),
+        _section(
+            "transitions",
+            "How it gets from clip to clip",
+            "A jump is a step at which the frame shown is not the next one of its clip.",
+            "".join(
+                _figure(drawn[name]) for name in ("transition_kinds", "transition_matrix", "clip_circles")
+            ),
+        ),
+        _replay(evaluation),
+        _tables(evaluation),
+        _section("method", "How it was measured", SOURCE, terms(evaluation.summary)),
+    ]
+    return "\n".join(filter(None, parts))
+
+
+def clip_groups(evaluation: Evaluation) -> tuple[list[str], dict[str, list[str]]]:
+    """What the coverage scatter can pick out: every clip by name, and groups of clips."""
+    clips = sorted(dict.fromkeys(evaluation.measured.coverage["clip"].tolist()))
+    table = evaluation.measured.clips
+    played, names = table["played_seconds"], table["clip"]
+    most = np.argsort(-played, kind="stable")[:_MOST_PLAYED]
+    groups = {
+        f"The {len(most)} clips played most": names[most[played[most] > 0]].tolist(),
+        "Clips never played": names[played == 0].tolist(),
+    }
+    return clips, {label: members for label, members in groups.items() if members}
+
+
+def _section(name: str, title: str, lead: str, content: str) -> str:
+    head = element("h2", text(title)) + (element("p", text(lead), class_="lead") if lead else "")
+    return element("section", head + content, id=name)
+
+
+def _verdict(evaluation: Evaluation) -> str:
+    places = {
+        "coverage": "Coverage",
+        "accuracy": "Accuracy",
+        "relevance": "Clips",
+        "transitions": "Transitions",
+        "replay": "Worst trial",
+        "tables": "Tables",
+        "method": "Method",
+    }
+    # The verdict closes with the notes, which the page shows in a box of their own.
+    said = [sentence for sentence in evaluation.verdict.sentences if sentence not in evaluation.notes]
+    links = "".join(
+        element("li", element("a", text(name), href=f"#{place}")) for place, name in places.items()
+    )
+    return element(
+        "section",
+        element("h2", text(evaluation.verdict.headline))
+        + element("ul", items(said))
+        + element("nav", element("ul", links), aria_label="Sections"),
+        id="verdict",
+    )
+
+
+def _failed(failed: Mapping[str, str]) -> str:
+    if not failed:
+        return ""
+    rows = "".join(
+        element("li", element("code", text(file)) + ": " + text(reason)) for file, reason in failed.items()
+    )
+    title = f"{count(len(failed), 'file')} could not be used"
+    return element("div", element("h2", text(title)) + element("ul", rows), class_="notice", id="failed")
+
+
+def _notes(notes: Sequence[str]) -> str:
+    if not notes:
+        return ""
+    content = element("h2", "Noticed on the way") + element("ul", items(notes))
+    return element("div", content, class_="notice", id="notes")
+
+
+def _figure(figure: Figure, controls: str = "", *, choice: str | None = None, hidden: bool = False) -> str:
+    caption = element("figcaption", element("h3", text(figure.title)) + element("p", text(figure.sentence)))
+    shape = "chart ring" if figure.chart["height"] == "container" else "chart"
+    chart = element("div", "", class_=shape, data_figure=figure.name)
+    return element(
+        "figure",
+        caption + controls + chart,
+        class_="figure",
+        data_choice=choice,
+        hidden=hidden,
+        id=figure.name,
+    )
+
+
+def _scatter(figure: Figure, evaluation: Evaluation) -> str:
+    clips, groups = clip_groups(evaluation)
+    grouped = "".join(
+        element("option", text(f"{label} ({len(members):,})"), value=f"group:{number}")
+        for number, (label, members) in enumerate(groups.items())
+    )
+    named = "".join(
+        element("option", text(clip), value=f"clip:{number}") for number, clip in enumerate(clips)
+    )
+    choices = (
+        element("option", "All clips, each in its colour", value="")
+        + (element("optgroup", grouped, label="Groups") if grouped else "")
+        + element("optgroup", named, label="One clip")
+    )
+    label = element("label", "Show", for_="clip-select")
+    count = element("span", "", id="chosen-count", role="status")
+    select = element("select", choices, id="clip-select", autocomplete="off")
+    return _figure(figure, element("div", label + select + count, class_="controls"))
+
+
+def _maps(maps: Sequence[Figure], evaluation: Evaluation) -> str:
+    """All maps of the trials, of which the controls show one."""
+    trials = evaluation.measured.trials
+    sets = list(dict.fromkeys(zip(trials["scenario"].tolist(), trials["tracking"].tolist(), strict=True)))
+    views = {"holds": "Verdict", **{measure.column: measure.label for measure in MEASURES}}
+    buttons = "".join(
+        element(
+            "label",
+            f"<input{' checked' if place == 0 else ''} type='radio' name='measure' autocomplete='off' "
+            f"value='{name}'>" + element("span", text(label)),
+        )
+        for place, (name, label) in enumerate(views.items())
+    )
+    controls = element(
+        "fieldset", element("legend", "Colour by") + buttons, class_="controls choices"
+    ) + _set_choice(sets)
+    shown = iter(maps)
+    content = ""
+    for number in range(len(sets)):
+        for place, name in enumerate(views):
+            choice = name + (f" {number}" if len(sets) > 1 else "")
+            content += _figure(next(shown), choice=choice, hidden=number + place > 0)
+    return element("div", controls + content, data_choose=True)
+
+
+def _set_choice(sets: Sequence[tuple[str, str]]) -> str:
+    if len(sets) < 2:
+        return ""
+    words = {"time": "aims at the timed plan", "velocity": "asks for speed and turn rate only"}
+    options = "".join(
+        element("option", text(f"{scenario}, {words.get(tracking, tracking)}"), value=str(number))
+        for number, (scenario, tracking) in enumerate(sets)
+    )
+    label = element("label", "Trials", for_="set-select")
+    select = element("select", options, id="set-select", autocomplete="off")
+    return element("div", label + select, class_="controls")
+
+
+def _never(evaluation: Evaluation) -> str:
+    names = never_played(evaluation.measured.clips)
+    if not names:
+        return ""
+    title = f"{count(len(names), 'clip')} never played"
+    return _folded(title, element("ul", items(names), class_="names"), "never-played")
+
+
+def _folded(title: str, content: str, name: str) -> str:
+    return element(
+        "details", element("summary", text(title)) + element("div", content, class_="inside"), id=name
+    )
+
+
+def _replay(evaluation: Evaluation) -> str:
+    sentence = replay_sentence(evaluation.replay)
+    return _section("replay", "The worst trial, replayed", sentence, own("player.html"))
+
+
+def _tables(evaluation: Evaluation) -> str:
+    return _section(
+        "tables",
+        "Tables",
+        "Metres, seconds, degrees. A header sorts; the CSV files hold every column and row.",
+        "".join(
+            _folded(title, _save_button(name) + content, f"table-{name}")
+            for name, title, content in _each_table(evaluation)
+        ),
+    )
+
+
+def _each_table(evaluation: Evaluation) -> Iterator[tuple[str, str, str]]:
+    measured = evaluation.measured
+    named: list[tuple[str, str, Any, list[Column]]] = [
+        ("trials", "Trials", measured.trials, trial_columns()),
+        ("clips", "Clips", recordings(measured.clips), clip_columns()),
+        ("jumps", "Jumps from clip to clip", flows(measured.transitions), flow_columns()),
+    ]
+    for name, title, table, columns in named:
+        yield name, f"{title} ({len(table):,})", html_table(table, columns, f"{title}, sortable")
+
+
+def _save_button(name: str) -> str:
+    button = element("button", f"Save {name}.csv", type="button", data_save=name)
+    return element("div", button, class_="controls")

@@ -1,0 +1,236 @@
+"""The figures: what they count, what they say, and that their colours can be read."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fake_evaluation import fake_evaluation, with_names
+from gmr.errors import MissingExtraError
+from gmr.evaluation import Evaluation, Table, Tables
+from gmr.evaluation.figures import figures, svg
+from gmr.evaluation.figures.classes import Classes, two_sided
+from gmr.evaluation.figures.clip_circles import clip_circles
+from gmr.evaluation.figures.clip_usage import clip_usage, never_played, recordings
+from gmr.evaluation.figures.coverage_density import coverage_density
+from gmr.evaluation.figures.coverage_scatter import coverage_scatter
+from gmr.evaluation.figures.frame_usage import frame_usage
+from gmr.evaluation.figures.holds_map import holds_map
+from gmr.evaluation.figures.theme import DARK, LIGHT, STEPS
+from gmr.evaluation.figures.transition_matrix import flows
+from gmr.evaluation.figures.wording import base_name, short_names
+from gmr.evaluation.regions import Grid, Limits
+
+
+@pytest.fixture(scope="module")
+def evaluation() -> Evaluation:
+    return fake_evaluation()
+
+
+@pytest.fixture(scope="module")
+def mirrored() -> Evaluation:
+    return fake_evaluation(40, mirrored=True)
+
+
+def without(evaluation: Evaluation, **changes: Table) -> Evaluation:
+    return replace(evaluation, measured=replace(evaluation.measured, **changes))
+
+
+def test_every_figure_has_a_name_of_its_own_and_a_sentence(evaluation: Evaluation) -> None:
+    drawn = list(figures(evaluation))
+    assert len({figure.name for figure in drawn}) == len(drawn)
+    for figure in drawn:
+        assert figure.sentence.endswith(".")
+        assert "nan" not in figure.sentence.split()
+        assert figure.title
+
+
+def test_a_description_is_complete_and_plain_json(evaluation: Evaluation) -> None:
+    for figure in figures(evaluation):
+        text = json.dumps(figure.description(), allow_nan=True)
+        assert "var(--" not in text
+        assert json.loads(text)["datasets"].keys() == figure.data.keys()
+
+
+def test_svg_writes_one_file_a_printable_figure(tmp_path: Path, mirrored: Evaluation) -> None:
+    pytest.importorskip("vl_convert")
+    written = svg(mirrored, tmp_path / "figures")
+    assert {path.stem for path in written} == {
+        figure.name for figure in figures(mirrored) if figure.printable
+    }
+    for path in written:
+        text = path.read_text(encoding="utf-8")
+        assert text.startswith("<svg")
+        assert "var(--" not in text
+        assert len(text) < 1_000_000
+
+
+def test_svg_without_its_extra_says_what_to_install(
+    tmp_path: Path, mirrored: Evaluation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "vl_convert", None)
+    with pytest.raises(MissingExtraError, match=r"gmr-motion\[report\]"):
+        svg(mirrored, tmp_path / "figures")
+    assert not (tmp_path / "figures").exists()
+
+
+def test_figures_of_hardly_any_data_are_drawn_too(evaluation: Evaluation) -> None:
+    measured = evaluation.measured
+    nothing: dict[str, Any] = {
+        name: getattr(measured, name).take(np.arange(0)) for name in ("coverage", "transitions")
+    }
+    usage = Table({**dict(measured.usage), "count": np.zeros(len(measured.usage), int)})
+    clips = Table(
+        {
+            **dict(measured.clips),
+            **dict.fromkeys(("played_seconds", "played_share"), np.zeros(len(measured.clips))),
+        }
+    )
+    bare = without(evaluation, usage=usage, clips=clips, trials=measured.trials.take([0]), **nothing)
+    for figure in figures(bare):
+        assert figure.sentence.endswith(".")
+        json.dumps(figure.description())
+
+
+def test_density_holds_all_of_the_time_but_what_it_says_is_left_out(evaluation: Evaluation) -> None:
+    drawn = coverage_density(evaluation).data["cells"]["seconds"].sum()
+    windows = evaluation.measured.coverage
+    assert drawn <= windows["weight"].sum() + 1e-6
+    assert drawn >= 0.99 * windows["weight"].sum()
+
+
+def test_scatter_draws_every_window_until_they_are_too_many(evaluation: Evaluation) -> None:
+    assert len(coverage_scatter(evaluation).data["windows"]) == len(evaluation.measured.coverage)
+    many = coverage_scatter(fake_evaluation(159, 500))
+    assert 12_000 < len(many.data["windows"]) <= 24_000
+    assert "One window in 4" in many.sentence
+
+
+def test_scatter_thinned_keeps_every_clip() -> None:
+    many = fake_evaluation(159, 500)
+    assert set(coverage_scatter(many).data["windows"]["clip"]) == set(many.measured.clips["clip"])
+
+
+def test_recordings_add_up_to_what_was_played(mirrored: Evaluation) -> None:
+    clips = mirrored.measured.clips
+    table = recordings(clips)
+    assert len(table) == 40
+    assert table["played_share"].sum() == pytest.approx(1.0)
+    assert table["played_seconds"].sum() == pytest.approx(clips["played_seconds"].sum())
+    assert table["seconds"].sum() == pytest.approx(clips["seconds"][~clips["mirrored"]].sum())
+    np.testing.assert_allclose(table["share_recorded"] + table["share_mirrored"], table["played_share"])
+    assert (np.diff(table["played_share"]) <= 0).all()
+
+
+def test_never_played_are_those_without_a_played_frame(mirrored: Evaluation) -> None:
+    usage = mirrored.measured.usage
+    played = {base_name(clip) for clip in usage["clip"][usage["count"] > 0]}
+    everything = {base_name(clip) for clip in usage["clip"]}
+    assert set(never_played(mirrored.measured.clips)) == everything - played
+    assert f"{len(everything - played)} of 40 clips" in clip_usage(mirrored).sentence
+
+
+def test_flows_keep_every_jump(mirrored: Evaluation) -> None:
+    transitions = mirrored.measured.transitions
+    table = flows(transitions)
+    assert table["count"].sum() == transitions["count"].sum()
+    start, end = table["from_clip"][0], table["to_clip"][0]
+    expected = sum(
+        row["count"]
+        for row in transitions.rows()
+        if (base_name(row["from_clip"]), base_name(row["to_clip"])) == (start, end)
+    )
+    assert table["count"][0] == expected
+
+
+def test_frame_usage_keeps_every_play_of_the_clips_that_it_draws(evaluation: Evaluation) -> None:
+    usage = evaluation.measured.usage
+    pieces = frame_usage(evaluation).data["pieces"]
+    name = pieces["clip"][0]
+    frames = usage["count"][usage["clip"] == name]
+    drawn = pieces["plays"][pieces["clip"] == name]
+    size = np.bincount(np.arange(len(frames)) * 40 // len(frames))
+    assert (drawn * size).sum() == pytest.approx(frames.sum())
+
+
+def test_clip_circles_draw_no_more_lines_than_can_be_seen(evaluation: Evaluation) -> None:
+    lines = clip_circles(evaluation).data["lines"]
+    assert 0 < len(lines) <= 400
+    assert (np.abs(lines["x"]) <= 1.4).all()
+    assert (np.abs(lines["y"]) <= 1.0).all()
+
+
+def test_the_map_of_the_verdict_agrees_with_the_verdict(evaluation: Evaluation) -> None:
+    drawn = holds_map(evaluation, "constant", "time").data["trials"]
+    grid = Grid.of(evaluation.measured.trials, evaluation.measured.coverage, Limits())
+    assert (drawn["outcome"] == "holds").sum() == grid.held.sum()
+    worst = int(np.argmax(drawn["offset_mean"]))
+    assert drawn["outcome"][worst] == "strays from the path"
+
+
+def test_classes_sort_values_at_their_borders() -> None:
+    classes = Classes("error", (0.1, 1.0))
+    assert classes.of(np.array([0.0, 0.1, 0.5, 1.0, 9.0, np.nan, np.inf])).tolist() == [0, 1, 1, 2, 2, -1, -1]
+    assert two_sided((1.0, 2.0)).of(np.array([-3.0, -1.5, 0.0, 1.5, 3.0])).tolist() == [0, 1, 2, 3, 4]
+    with pytest.raises(ValueError, match="7 colours"):
+        Classes("error", tuple(map(float, range(STEPS))))
+
+
+def luminance(colour: str) -> float:
+    parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    return float(np.dot([0.2126, 0.7152, 0.0722], linear))
+
+
+def contrast(first: str, second: str) -> float:
+    low, high = sorted(map(luminance, (first, second)))
+    return (high + 0.05) / (low + 0.05)
+
+
+@pytest.mark.parametrize("colours", [LIGHT, DARK], ids=["light", "dark"])
+def test_text_can_be_read_on_its_ground(colours: dict[str, str]) -> None:
+    for name, colour in colours.items():
+        if name.startswith("on-"):
+            assert contrast(colour, colours[name.removeprefix("on-")]) >= 4.5, name
+    for ink in ("ink", "ink-soft", "accent"):
+        assert contrast(colours[ink], colours["page"]) >= 4.5, ink
+        assert contrast(colours[ink], colours["panel"]) >= 4.5, ink
+    assert contrast(colours["warning"], colours["warning-panel"]) >= 4.5
+    assert colours.keys() == LIGHT.keys()
+
+
+@pytest.mark.parametrize("colours", [LIGHT, DARK], ids=["light", "dark"])
+@pytest.mark.parametrize("scale", ["amount", "error"])
+def test_scales_are_ordered_by_lightness(colours: dict[str, str], scale: str) -> None:
+    steps = [luminance(colours[f"{scale}-{step}"]) for step in range(STEPS)]
+    assert steps in (sorted(steps), sorted(steps, reverse=True))
+
+
+@given(st.lists(st.text(min_size=1, max_size=60), unique=True, max_size=12))
+def test_short_names_stay_different(names: list[str]) -> None:
+    labels = short_names(names)
+    assert len(set(labels)) == len(names)
+
+
+def test_short_names_drop_what_tells_nothing() -> None:
+    assert short_names(["a/walk_01.bvh", "b/walk_02.bvh"]) == ["walk_01", "walk_02"]
+    assert short_names(["a/walk.bvh", "b/walk.bvh"]) == ["a/walk", "b/walk"]
+    assert short_names(["a/walk.bvh", "a/walk.bvh (mirrored)"]) == ["walk", "walk (mirrored)"]
+    (label,) = short_names(["dataset-1_walk_with_a_very_long_name_and_number_017.bvh"])
+    assert label.startswith("…")
+    assert label.endswith("number_017")
+
+
+def test_clips_of_other_names_are_drawn_alike(evaluation: Evaluation) -> None:
+    first = evaluation.measured.clips["clip"][0]
+    renamed = with_names(evaluation, {first: "x"})
+    assert isinstance(renamed.measured, Tables)
+    assert len(clip_usage(renamed).data["bars"]) == len(clip_usage(evaluation).data["bars"])
