@@ -162,6 +162,10 @@ class ChannelLayout:
 
         One channel is left alone: a hinge stays a hinge when its motion is resampled.
         """
+        return self._completed
+
+    @cached_property
+    def _completed(self) -> ChannelLayout:
         names = tuple(_completed(channels) for channels in self.names)
         return self if names == self.names else replace(self, names=names)
 

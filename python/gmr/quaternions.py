@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["conjugate", "multiply"]
+__all__ = ["conjugate", "from_matrix", "matrices", "multiply"]
 
 
 def multiply(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -24,3 +26,31 @@ def conjugate(a: NDArray[np.float64]) -> NDArray[np.float64]:
     """(..., 4) the inverse rotations of unit quaternions."""
     inverse: NDArray[np.float64] = a * np.array([-1.0, -1.0, -1.0, 1.0])
     return inverse
+
+
+def matrices(a: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
+    """(..., 3, 3) rotation matrices of (..., 4) unit quaternions."""
+    x, y, z, w = np.moveaxis(np.asarray(a, np.float64), -1, 0)
+    found: NDArray[np.float64] = np.empty((*a.shape[:-1], 3, 3))
+    found[..., 0, :] = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)], axis=-1)
+    found[..., 1, :] = np.stack([2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)], axis=-1)
+    found[..., 2, :] = np.stack([2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)], axis=-1)
+    return found
+
+
+def from_matrix(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(4,) unit quaternion of a (3, 3) rotation matrix.
+
+    It is the eigenvector of the largest eigenvalue of Bar-Itzhack's symmetric matrix, which no angle makes
+    inexact. Source: Bar-Itzhack, "New Method for Extracting the Quaternion from a Rotation Matrix" (2000).
+    """
+    m = matrix
+    k = np.array(
+        [
+            [m[0, 0] - m[1, 1] - m[2, 2], m[1, 0] + m[0, 1], m[2, 0] + m[0, 2], m[2, 1] - m[1, 2]],
+            [m[1, 0] + m[0, 1], m[1, 1] - m[0, 0] - m[2, 2], m[2, 1] + m[1, 2], m[0, 2] - m[2, 0]],
+            [m[2, 0] + m[0, 2], m[2, 1] + m[1, 2], m[2, 2] - m[0, 0] - m[1, 1], m[1, 0] - m[0, 1]],
+            [m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], m[0, 0] + m[1, 1] + m[2, 2]],
+        ]
+    )
+    return np.asarray(np.linalg.eigh(k)[1][:, 3], np.float64)

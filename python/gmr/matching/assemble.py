@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gmr import _core
-from gmr.errors import DatasetError, GmrError
+from gmr.errors import DatasetError, GmrError, SkeletonError
+from gmr.matching.mirroring import Mirror, find_mirror
 from gmr.matching.prepare import in_metres_upright
 from gmr.matching.root import RootTrack, root_track
 from gmr.matching.schema import Schema
@@ -23,14 +24,26 @@ Tags = Mapping[str, ArrayLike]
 file)."""
 
 
+_MIRROR_SAMPLES = 16
+"""Clips whose poses decide how the joints' frames are mirrored."""
+
+_FASTEST = 15.0
+"""Metres a second that no hips move at: a sprinter reaches 12."""
+
+
 @dataclass(frozen=True, slots=True)
 class Take:
-    """A clip in metres, Y up, at the database's rate."""
+    """A clip in metres, Y up, at the database's rate, as the core takes it."""
 
     name: str
-    motion: Motion
     positions: NDArray[np.float32]
     """(F, J, 3) world positions."""
+    rotations: NDArray[np.float64]
+    """(F, S, 4) local rotations."""
+    translations: NDArray[np.float64]
+    """(F, T, 3) of the joints that any clip translates."""
+    offsets: NDArray[np.float64]
+    """(J, 3) of its skeleton."""
     root: RootTrack
     tags: NDArray[np.uint32] | None
     """(F,) bits; None: all clear."""
@@ -38,14 +51,15 @@ class Take:
     """Second of the file at which it begins."""
     mirrored: bool = False
 
-    def mirror_image(self) -> Take:
+    def image(self, mirror: Mirror, translated: NDArray[np.int32]) -> Take:
         """The take seen in a mirror, left for right."""
-        image = self.motion.mirror()
         return replace(
             self,
             name=f"{self.name} (mirrored)",
-            motion=image,
-            positions=image.positions(dtype=np.float32),
+            positions=mirror.positions(self.positions),
+            rotations=mirror.rotations(self.rotations),
+            translations=mirror.translations(self.translations, translated),
+            offsets=mirror.offsets(self.offsets),
             root=self.root.mirrored(),
             mirrored=True,
         )
@@ -56,8 +70,6 @@ class Assembly:
     """A database in the making."""
 
     builder: _core.DatabaseBuilder
-    translated: NDArray[np.int32]
-    """(T,) the joints that any clip translates."""
     excluded: dict[str, str]
     clip_names: list[str] = field(default_factory=list)
     mirrored: list[bool] = field(default_factory=list)
@@ -69,31 +81,11 @@ class Assembly:
         Raises:
             ValueError: it holds numbers that are not finite.
         """
-        motion = take.motion
-        self.builder.add_clip(
-            take.positions,
-            motion.rotations,
-            self._translations(motion),
-            motion.skeleton.offsets,
-            take.root.ground,
-            take.root.heading,
-            take.tags,
-        )
+        pose = (take.positions, take.rotations, take.translations, take.offsets)
+        self.builder.add_clip(*pose, take.root.ground, take.root.heading, take.tags)
         self.clip_names.append(take.name)
         self.mirrored.append(take.mirrored)
         self.starts.append(take.start)
-
-    def _translations(self, motion: Motion) -> NDArray[np.float64]:
-        """(F, T, 3) of all joints that any clip translates; where this one does not, its offsets."""
-        if np.array_equal(motion.translated, self.translated):
-            return motion.translations
-        column = {joint: k for k, joint in enumerate(motion.translated.tolist())}
-        rest = np.broadcast_to(motion.skeleton.offsets, (motion.frame_count, *motion.skeleton.offsets.shape))
-        found = [
-            motion.translations[:, column[joint]] if joint in column else rest[:, joint]
-            for joint in self.translated.tolist()
-        ]
-        return np.ascontiguousarray(np.stack(found, axis=1))
 
 
 def assemble(seen: Survey, schema: Schema, rate: float, mirror: bool, tags: Tags | None) -> Assembly:
@@ -105,37 +97,95 @@ def assemble(seen: Survey, schema: Schema, rate: float, mirror: bool, tags: Tags
         DatasetError: no clip is left, tags fit no clip, or the schema asks for a joint that is not there.
     """
     _check_tags(seen, tags or {})
+    image = _mirror(seen) if mirror else None
     translated = np.unique(np.concatenate([motion.translated for motion in seen.motions.values()]))
+    if image is not None:
+        translated = np.union1d(translated, image.pair[translated])
     groups = schema.resolve(seen.skeleton, seen.joints.roles, rate)
     try:
         builder = _core.DatabaseBuilder(seen.skeleton.topology, translated.tolist(), groups, rate)
     except ValueError as error:
         raise DatasetError(str(error)) from error
-    assembly = Assembly(builder, translated.astype(np.int32), dict(seen.excluded))
+    assembly = Assembly(builder, dict(seen.excluded))
     for name in seen.motions:
-        name_of_next = name
         try:
-            take = _take(seen, name, rate, (tags or {}).get(name))
+            take = _take(seen, name, rate, translated, (tags or {}).get(name))
             assembly.add(take)
-            if mirror:
-                name_of_next = f"{name} (mirrored)"
-                assembly.add(take.mirror_image())
+            if image is not None:
+                assembly.add(take.image(image, translated))
         except (GmrError, ValueError) as error:
-            assembly.excluded[name_of_next] = str(error)
+            assembly.excluded[name] = str(error)
     if not assembly.clip_names:
         reasons = "; ".join(f"'{name}': {why}" for name, why in list(assembly.excluded.items())[:5])
         raise DatasetError(f"no clip could be used ({reasons})")
     return assembly
 
 
-def _take(seen: Survey, name: str, rate: float, tags: ArrayLike | None) -> Take:
-    """One clip of a survey, prepared."""
+def _mirror(seen: Survey) -> Mirror:
+    """How the dataset's clips are mirrored.
+
+    Raises:
+        DatasetError: a joint of one side has no partner on the other.
+    """
+    names = list(seen.samples)[:: max(1, len(seen.samples) // _MIRROR_SAMPLES)]
+    clips = [in_metres_upright(seen.samples[name], seen.units[name], seen.up) for name in names]
+    try:
+        return find_mirror(seen.skeleton, clips, seen.joints.across[0])
+    except SkeletonError as error:
+        raise DatasetError(
+            f"the clips cannot be mirrored: {error} Or build without mirrored copies."
+        ) from error
+
+
+def _take(
+    seen: Survey, name: str, rate: float, translated: NDArray[np.int32], tags: ArrayLike | None
+) -> Take:
+    """One clip of a survey, prepared.
+
+    Raises:
+        DatasetError: its hips jump.
+        ValueError: it shows no facing.
+    """
     motion, skipped = seen.motions[name], seen.skipped.get(name, 0)
     prepared = in_metres_upright(motion, seen.units[name], seen.up).resample(rate)
     positions = prepared.positions(dtype=np.float32)
-    root = root_track(prepared, positions, seen.joints, seen.root)
-    bits = None if tags is None else _bits(np.asarray(tags, np.uint32), motion, prepared, skipped)
-    return Take(name, prepared, positions, root, bits, skipped * motion.frame_time)
+    translations = _translations(prepared, translated)
+    if seen.floor:
+        roots = np.isin(translated, seen.skeleton.roots)
+        positions[:, :, 1] -= seen.floor
+        translations = translations - roots[:, None] * [0.0, seen.floor, 0.0]
+    _check_speed(positions[:, seen.joints["hips"]], rate)
+    return Take(
+        name=name,
+        positions=positions,
+        rotations=prepared.rotations,
+        translations=translations,
+        offsets=prepared.skeleton.offsets,
+        root=root_track(prepared, positions, seen.joints, seen.root),
+        tags=None if tags is None else _bits(np.asarray(tags, np.uint32), motion, prepared, skipped),
+        start=skipped * motion.frame_time,
+    )
+
+
+def _check_speed(hips: NDArray[np.float32], rate: float) -> None:
+    """Raises where a recording has a hole: nobody's hips are that fast."""
+    steps = np.linalg.norm(np.diff(hips, axis=0), axis=1)
+    worst = int(np.argmax(steps)) if len(steps) else 0
+    if len(steps) and steps[worst] * rate > _FASTEST:
+        raise DatasetError(
+            f"its hips jump {steps[worst]:.2f} m within a frame, {worst / rate:.2f} s after its beginning; "
+            "cut the recording there"
+        )
+
+
+def _translations(motion: Motion, joints: NDArray[np.int32]) -> NDArray[np.float64]:
+    """(F, T, 3) of the joints that any clip translates; where this one does not, its offsets."""
+    if np.array_equal(motion.translated, joints):
+        return motion.translations
+    found = np.empty((motion.frame_count, len(joints), 3))
+    found[:] = motion.skeleton.offsets[joints]
+    found[:, np.searchsorted(joints, motion.translated)] = motion.translations
+    return found
 
 
 def _bits(tags: NDArray[np.uint32], motion: Motion, prepared: Motion, skipped: int) -> NDArray[np.uint32]:

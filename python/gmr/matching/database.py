@@ -95,7 +95,7 @@ class Database:
         """
         if not 1 <= rate <= 1000:
             raise DatasetError(f"a database cannot have {rate} frames a second; give 1 to 1000")
-        seen = survey(named(motions), schema.span + 1 / rate, names, unit)
+        seen = survey(named(motions), schema.span, names, unit)
         assembly = assemble(seen, schema, rate, mirror, tags)
         fitted = (normalization.offset, normalization.scale) if normalization else (None, None)
         try:

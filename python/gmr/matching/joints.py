@@ -84,7 +84,8 @@ def _given(skeleton: Skeleton, names: Mapping[str, str | int]) -> dict[str, int]
 
 
 def _missing(missing: list[str]) -> str:
-    listed = " and ".join(role.replace("_", " ") for role in missing)
+    parts = [role.replace("_", " ") for role in missing]
+    listed = parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} or {parts[-1]}"
     return f"the skeleton has no joint that is known as {listed}"
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gmr.errors import DatasetError
 from gmr.matching.body import UP_TURNS, turned_upright
 from gmr.motion import Motion
+from gmr.quaternions import multiply
 from gmr.units import UNITS
 
 __all__ = ["guessed_unit", "in_metres_upright", "unit_text"]
@@ -60,7 +60,7 @@ def _turned(motion: Motion, up: str) -> Motion:
     turning = np.unique(skeleton.slots[skeleton.slots >= 0])
     under_world = turning[np.asarray(topology.slot_parents)[turning] < 0]
     rotations, translations = motion.rotations.copy(), motion.translations.copy()
-    rotations[:, under_world] = _product(UP_TURNS[up], rotations[:, under_world])
+    rotations[:, under_world] = multiply(np.array(UP_TURNS[up]), rotations[:, under_world])
     roots = np.isin(motion.translated, skeleton.roots)
     translations[:, roots] = turned_upright(translations[:, roots], up)
     return Motion.from_pose(
@@ -72,10 +72,3 @@ def _turned(motion: Motion, up: str) -> Motion:
         unit=motion.unit,
         name=motion.name,
     )
-
-
-def _product(p: tuple[float, float, float, float], q: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Quaternion product of one rotation with many (..., 4), xyzw."""
-    x, y, z, w = p
-    left = np.array([[w, -z, y, x], [z, w, -x, y], [-y, x, w, z], [-x, -y, -z, w]])
-    return np.asarray(q @ left.T, np.float64)

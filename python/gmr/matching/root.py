@@ -3,15 +3,17 @@ facing."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gmr import _core
+from gmr.matching.body import Poses
 from gmr.matching.joints import Joints
 from gmr.motion import Motion
+from gmr.quaternions import matrices
 from gmr.skeleton import Skeleton
 
 __all__ = ["HEADING_WINDOW", "POSITION_WINDOW", "RootJoint", "RootTrack", "find_root_joint", "root_track"]
@@ -80,26 +82,25 @@ def root_track(
     return RootTrack(ground, np.unwrap(np.arctan2(forward[:, 0], forward[:, 2])))
 
 
-def find_root_joint(skeleton: Skeleton, joints: Joints, clips: Iterable[Motion]) -> RootJoint | None:
+def find_root_joint(
+    skeleton: Skeleton, joints: Joints, poses: Sequence[Poses], clips: Iterable[Motion]
+) -> RootJoint | None:
     """The joint above the hips that is the simulation root of every clip, if there is one.
 
-    It lies on the ground and near the body in every sampled frame, travels in at least one clip, and one
-    of its axes points where the body faces. A joint that rests at the origin while the body walks away is
-    none.
+    It lies on the ground and near the body in every sampled frame, travels in at least one clip, and one of
+    its axes points where the body faces. A joint that rests at the origin while the body walks away is none.
 
     Args:
         skeleton: whose joints they are.
         joints: the body's joints.
-        clips: some frames of each clip, metres, Y up.
+        poses: world positions of some frames of each clip, metres, Y up.
+        clips: the same frames as motions; looked at only where a joint travels with the body.
     """
-    above = _joints_above(skeleton, joints["hips"])
-    if not above:
-        return None
-    sampled = [(clip, clip.positions()) for clip in clips]
-    for joint, child in above:
-        goes_along = all(_goes_along(positions, joint, joints["hips"]) for _, positions in sampled)
-        if goes_along and any(_travels(positions, joint) for _, positions in sampled):
-            axes = np.concatenate([_facing_in(clip, positions, child, joints) for clip, positions in sampled])
+    for joint, child in _joints_above(skeleton, joints["hips"]):
+        goes_along = all(_goes_along(clip, joint, joints["hips"]) for clip in poses)
+        if goes_along and any(_travels(clip, joint) for clip in poses):
+            sampled = zip(clips, poses, strict=True)
+            axes = np.concatenate([_facing_in(clip, at, child, joints) for clip, at in sampled])
             forward = _main_axis(axes.mean(axis=0))
             if forward is not None:
                 return RootJoint(joint, child, forward)
@@ -115,25 +116,23 @@ def _joints_above(skeleton: Skeleton, hips: int) -> list[tuple[int, int]]:
     return found
 
 
-def _goes_along(positions: NDArray[np.floating], joint: int, hips: int) -> bool:
+def _goes_along(positions: Poses, joint: int, hips: int) -> bool:
     lowest = positions[:, :, 1].min(axis=1)
     apart = np.linalg.norm(positions[:, joint, ::2] - positions[:, hips, ::2], axis=1)
     return bool(np.all(positions[:, joint, 1] - lowest < _NEAR_GROUND) and np.all(apart < _NEAR_BODY))
 
 
-def _travels(positions: NDArray[np.floating], joint: int) -> bool:
+def _travels(positions: Poses, joint: int) -> bool:
     return bool(np.linalg.norm(np.ptp(positions[:, joint, ::2], axis=0)) > _TRAVELS)
 
 
-def _facing_in(
-    motion: Motion, positions: NDArray[np.floating], child: int, joints: Joints
-) -> NDArray[np.float64]:
+def _facing_in(motion: Motion, positions: Poses, child: int, joints: Joints) -> NDArray[np.float64]:
     """(F, 3) direction that the body faces, in the frame that turns the bone of ``child``."""
     left, right = joints.across[0]
-    across = positions[:, left].astype(np.float64) - positions[:, right]
+    across = positions[:, left] - positions[:, right]
     facing = np.stack([-across[:, 2], np.zeros(len(across)), across[:, 0]], axis=1)
     facing /= np.linalg.norm(facing, axis=1, keepdims=True).clip(1e-9)
-    frame = _matrices(motion.bone_rotations(dtype=np.float64)[:, child])
+    frame = matrices(motion.bone_rotations(dtype=np.float64)[:, child])
     return np.asarray(np.einsum("fji,fj->fi", frame, facing), np.float64)
 
 
@@ -148,16 +147,5 @@ def _main_axis(mean: NDArray[np.float64]) -> tuple[float, float, float] | None:
 
 def _turned(motion: Motion, root: RootJoint) -> NDArray[np.float64]:
     """(F, 3) where the root joint's forward axis points."""
-    frame = _matrices(motion.bone_rotations(dtype=np.float64)[:, root.child])
+    frame = matrices(motion.bone_rotations(dtype=np.float64)[:, root.child])
     return np.asarray(frame @ np.array(root.forward), np.float64)
-
-
-def _matrices(quaternions: NDArray[np.floating]) -> NDArray[np.float64]:
-    """(F, 3, 3) rotation matrices of (F, 4) quaternions xyzw."""
-    x, y, z, w = quaternions.T.astype(np.float64)
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0)

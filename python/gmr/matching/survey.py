@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gmr.errors import DatasetError
-from gmr.matching.body import Poses, leg_length, up_axis
+from gmr.matching.body import Poses, leg_length, turned_upright, up_axis
 from gmr.matching.joints import Joints, find_joints
 from gmr.matching.prepare import guessed_unit, in_metres_upright, unit_text
 from gmr.matching.root import RootJoint, find_root_joint
@@ -24,6 +24,13 @@ _SAMPLES = 12
 """Poses of each clip that decide on joints, up axis and unit."""
 
 
+_PRINTED = 1e-4
+"""Share by which a frame time may be off for being cut in print."""
+
+_ABOUT_GROUND = 0.1
+"""Metres within which the lowest joints of a body that stands on the ground are expected."""
+
+
 @dataclass(frozen=True, slots=True)
 class Survey:
     """The clips that can be used, and what holds for all of them."""
@@ -32,6 +39,8 @@ class Survey:
     """By name, without a converter's T-pose, else as read."""
     skipped: Mapping[str, int]
     """Frames left out at the beginning of a clip, where there are any."""
+    samples: Mapping[str, Motion]
+    """Some frames of each clip."""
     skeleton: Skeleton
     """That of the first clip; names, parents and slots are those of all."""
     joints: Joints
@@ -39,6 +48,8 @@ class Survey:
     """The axis that is up in the files, such as ``"+Y"``."""
     units: Mapping[str, float]
     """Metres per file unit of each clip."""
+    floor: float
+    """Height of the ground in the files, metres; 0 where it is near 0."""
     root: RootJoint | None
     """The joint that already is a simulation root, None where one is made."""
     excluded: Mapping[str, str]
@@ -76,12 +87,16 @@ def survey(
     joints = find_joints(skeleton, pooled, names)
     up = up_axis(pooled, joints.roles)
     units, unit_notes = _units(usable, poses, joints, unit)
-    upright = (in_metres_upright(motion, units[name], up) for name, motion in sampled.items())
-    root = find_root_joint(skeleton, joints, upright)
+    upright = [turned_upright(clip * units[name], up) for name, clip in poses.items()]
+    clips = (in_metres_upright(motion, units[name], up) for name, motion in sampled.items())
+    root = find_root_joint(skeleton, joints, upright, clips)
+    floor = _floor(upright)
     notes += _joint_notes(skeleton, joints, root) + unit_notes
     if up != "+Y":
         notes.append(f"The files have {up} up; they were turned to +Y.")
-    return Survey(usable, skipped, skeleton, joints, up, units, root, excluded, tuple(notes))
+    if floor:
+        notes.append(f"The ground of the files lies at {floor:.2f} m; they were moved to have it at 0.")
+    return Survey(usable, skipped, sampled, skeleton, joints, up, units, floor, root, excluded, tuple(notes))
 
 
 def listed(names: Iterable[str], limit: int = 5) -> str:
@@ -124,7 +139,7 @@ def _short_notes(motions: Mapping[str, Motion], shortest: float) -> list[str]:
         DatasetError: all of them are.
     """
     seconds = {name: (motion.frame_count - 1) * motion.frame_time for name, motion in motions.items()}
-    short = [name for name in motions if seconds[name] < shortest]
+    short = [name for name in motions if seconds[name] < shortest * (1 - _PRINTED)]
     if len(short) == len(motions):
         longest = max(short, key=lambda name: seconds[name])
         raise DatasetError(
@@ -134,8 +149,8 @@ def _short_notes(motions: Mapping[str, Motion], shortest: float) -> list[str]:
     if not short:
         return []
     return [
-        f"Shorter than the {shortest:.2f} s of a pose and the path ahead of it, and so counted for coverage but "
-        f"never matched: {len(short)} of {len(motions)} clips ({listed(short, 3)})."
+        f"Shorter than the {shortest:.2f} s of a pose and the path ahead of it, and so counted for coverage "
+        f"but never matched: {len(short)} of {len(motions)} clips ({listed(short, 3)})."
     ]
 
 
@@ -193,13 +208,12 @@ def _difference(usual: Skeleton, odd: Skeleton) -> str:
 
 
 def _pooled(skeleton: Skeleton, poses: Iterable[Poses]) -> Poses:
-    """Poses of all clips together, each clip scaled by its median bone, for files may differ in unit."""
+    """Poses of all clips together, each clip scaled by its mean bone, for files may differ in unit."""
     inner = np.flatnonzero(skeleton.parents >= 0)
     scaled = []
     for clip in poses:
         bones = np.linalg.norm(clip[:, inner] - clip[:, skeleton.parents[inner]], axis=2).mean(axis=0)
-        proper = bones[bones > 1e-9]
-        scaled.append(clip / (np.median(proper) if proper.size else 1.0))
+        scaled.append(clip / max(bones.mean(), 1e-12))
     return np.concatenate(scaled)
 
 
@@ -223,12 +237,22 @@ def _units(
         units[name] = known
     notes = [
         f"Unit guessed from the length of the legs: {unit_text(metres)}, which makes the body about "
-        f"{np.median([stature for _, stature in clips]):.2f} m tall"
+        f"{_middle([stature for _, stature in clips]):.2f} m tall"
         + (f" (for {listed([name for name, _ in clips])})" if len(guesses) > 1 else "")
         + "; say unit=... if it is another."
         for metres, clips in guesses.items()
     ]
     return units, notes
+
+
+def _floor(upright: Iterable[Poses]) -> float:
+    """Height on which the lowest joints stand in the middle one of the clips; 0 where it is about 0."""
+    heights = [float(np.sort(clip[:, :, 1].min(axis=1))[len(clip) // 10]) for clip in upright]
+    return _middle(heights) if abs(_middle(heights)) > _ABOUT_GROUND else 0.0
+
+
+def _middle(values: list[float]) -> float:
+    return sorted(values)[len(values) // 2]
 
 
 def _joint_notes(skeleton: Skeleton, joints: Joints, root: RootJoint | None) -> list[str]:

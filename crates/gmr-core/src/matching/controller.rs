@@ -209,7 +209,10 @@ impl<'a> Controller<'a> {
     }
 
     fn neighbourhood(&self) -> Range<u32> {
-        near(self.continuing, self.settings.exclude_within, &self.database.clip_rows(self.continuing))
+        let clip = self.database.clip_rows(self.continuing);
+        let within = self.settings.exclude_within;
+        let start = self.continuing.saturating_sub(within).max(clip.start);
+        start..self.continuing.saturating_add(within).saturating_add(1).min(clip.end)
     }
 
     /// Puts what is asked for into the trajectory dimensions of the query.
@@ -274,25 +277,5 @@ impl<'a> Controller<'a> {
         self.history.push(self.placement().advanced(displacement, step.turn.into()));
         // A clip's last row can only be shown where the schema has no future; the search is forced there again.
         self.continuing = self.database.next_row(shown).unwrap_or(shown);
-    }
-}
-
-/// The rows of `clip` that are at most `within` frames from `row`.
-fn near(row: u32, within: u32, clip: &Range<u32>) -> Range<u32> {
-    let end = row.saturating_add(within).saturating_add(1);
-    row.saturating_sub(within).max(clip.start)..end.min(clip.end)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::near;
-
-    #[test]
-    fn the_neighbourhood_includes_both_its_ends_and_keeps_to_the_clip() {
-        assert_eq!(near(150, 20, &(100..300)), 130..171);
-        assert_eq!(near(110, 20, &(100..300)), 100..131);
-        assert_eq!(near(295, 20, &(100..300)), 275..300);
-        assert_eq!(near(7, 0, &(0..300)), 7..8);
-        assert_eq!(near(7, u32::MAX, &(0..300)), 0..300);
     }
 }

@@ -63,9 +63,7 @@ impl Walk {
             let swing = 0.5 * (std::f64::consts::TAU * self.cadence * time).sin();
             let [left, right] = [swing, -swing].map(|angle| turn * DQuat::from_rotation_x(-angle));
             let toe = DQuat::from_rotation_x(0.3 * swing);
-            // The hips rise and fall twice a cycle, as bodies do: a bone vector that moves.
-            let height = self.leg + 0.04 * (2.0 * std::f64::consts::TAU * self.cadence * time).cos();
-            let hips = DVec3::new(place.position.x, height, place.position.y);
+            let hips = DVec3::new(place.position.x, self.leg, place.position.y);
             let foot = hips + left * DVec3::from(offsets[1]);
             let joints = [
                 hips,
