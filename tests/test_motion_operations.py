@@ -103,6 +103,20 @@ def test_dropped_dummies_can_be_restored(motion: Motion) -> None:
     close(restored.translations, motion.translations)
 
 
+@given(either)
+def test_a_post_rotation_file_gets_only_the_dummies_that_it_needs(motion: Motion) -> None:
+    lean = motion.drop_dummies()
+    ready = lean.to_post_rotation()
+    assert set(lean.skeleton.names) <= set(ready.skeleton.names) <= set(motion.skeleton.names)
+    again = Motion.from_rows(ready.skeleton, ready.layout, ready.rows, ready.frame_time)  # type: ignore[arg-type]
+    close(places(again)[:, ready.skeleton.indices(lean.skeleton.names)], places(lean))
+    for dummy in set(ready.skeleton.names) - set(lean.skeleton.names):
+        joint = ready.skeleton.index(dummy)
+        own = ready.layout.owned_slots[joint]  # type: ignore[union-attr]
+        assert len(ready.skeleton.children[ready.skeleton.parents[joint]]) > 1
+        assert np.abs(ready.rotations[:, own, :3]).max() > 0
+
+
 @given(either, st.sampled_from(["m", "mm", "in"]))
 def test_another_unit_scales_positions_and_comes_back(motion: Motion, unit: str) -> None:
     motion = motion.with_unit("cm")

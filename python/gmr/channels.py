@@ -18,7 +18,7 @@ from gmr.arrays import read_only
 from gmr.errors import SkeletonError
 from gmr.skeleton import Skeleton, owned_slots
 
-__all__ = ["POSITIONS", "ROTATIONS", "ChannelLayout"]
+__all__ = ["POSITIONS", "ROTATIONS", "ChannelLayout", "turning_freely"]
 
 POSITIONS = {"xposition": 0, "yposition": 1, "zposition": 2}
 """Axis of each position channel, by its name in lower case."""
@@ -175,6 +175,14 @@ class ChannelLayout:
             return False
         above = np.array(self.parents, np.int32)
         return np.array_equal(skeleton.slots, np.where(above >= 0, self.owned_slots[above], -1))
+
+
+def turning_freely(channels: tuple[str, ...]) -> tuple[str, ...]:
+    """The channels of one joint, with three rotations that can write any turn."""
+    completed = _completed(channels)
+    if sum(name.lower() in ROTATIONS for name in completed) == 3:
+        return completed
+    return (*(name for name in channels if name.lower() in POSITIONS), *_STANDARD_ROTATIONS)
 
 
 def _completed(channels: tuple[str, ...]) -> tuple[str, ...]:

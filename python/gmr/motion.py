@@ -273,6 +273,12 @@ class Motion:
 
         return restore_dummies(self)
 
+    def to_post_rotation(self) -> Motion:
+        """The motion as rows of channels can say it; see :func:`gmr.post_rotation.to_post_rotation`."""
+        from gmr.post_rotation import to_post_rotation
+
+        return to_post_rotation(self)
+
     def __repr__(self) -> str:
         unit = "unit unknown" if self.unit is None else f"unit {self.unit:g} m"
         roots = ", ".join(self.roots) or "none"

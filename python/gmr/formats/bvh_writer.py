@@ -29,13 +29,15 @@ def bvh_chunks(motion: Motion) -> Iterator[bytes]:
     """The motion as a BVH file, piece by piece, so that a long one needs no memory for the whole.
 
     Rows that were read are written as they are, in the shortest decimals that read back bit-identical; a pose
-    is written in the Euler angles of the motion's layout. Zero-length tips that reading added are left out.
+    is written in the Euler angles of the motion's layout, with those of its dropped dummies that it takes to
+    let siblings turn independently. Zero-length tips that reading added are left out.
     All is checked before the first piece comes out.
 
     Raises:
         FormatError: a name or a value that BVH has no way to write; joint and frame are named.
         SkeletonError: siblings turn independently, which rows of channels cannot say.
     """
+    motion = motion.to_post_rotation()
     skeleton, rows = motion.skeleton, motion.rows
     layout = motion.layout or ChannelLayout.standard(skeleton, motion.translated)
     order = _file_order(skeleton)

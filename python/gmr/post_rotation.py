@@ -1,0 +1,115 @@
+"""The post-rotation form, which BVH, AMC and glTF need: the children of a joint share its rotation.
+
+A motion whose siblings turn independently gets back as many of its dropped dummies as that takes, and no
+more.
+Source: the General Motion Representation, its way out to a post-rotation format.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final, cast
+
+import numpy as np
+
+from gmr.arrays import read_only
+from gmr.channels import ChannelLayout, turning_freely
+from gmr.dummies import restore_dummies
+from gmr.frames import Pose, Rows
+from gmr.quaternions import multiply
+from gmr.skeleton import Skeleton
+
+if TYPE_CHECKING:
+    from gmr.motion import Motion
+
+__all__ = ["to_post_rotation"]
+
+_GONE: Final = -2
+_STILL: Final = 1e-12
+"""Sine of half the angle below which a joint counts as never turning."""
+
+
+def to_post_rotation(motion: Motion) -> Motion:
+    """The motion as rows of channels can say it; every joint keeps its place.
+
+    A dropped dummy stays away where its rotation can go elsewhere: it was its parent's only child, or never
+    turned. The others come back.
+
+    Returns:
+        A motion with a layout that fits its skeleton; the same motion where it has one already.
+
+    Raises:
+        SkeletonError: siblings turn independently for another reason than dropped dummies.
+    """
+    if motion.dropped is not None:
+        return _needed_only(to_post_rotation(restore_dummies(motion)), motion.dropped.dummies)
+    if isinstance(motion.source, Rows):
+        return motion
+    pose, skeleton = motion.source, motion.skeleton
+    layout = pose.layout or ChannelLayout.standard(skeleton, pose.translated)
+    if layout.fits(skeleton):
+        return motion if pose.layout else replace(motion, source=replace(pose, layout=layout))
+    return _renumbered(motion, pose, ChannelLayout.standard(skeleton, pose.translated))
+
+
+def _renumbered(motion: Motion, pose: Pose, layout: ChannelLayout) -> Motion:
+    """The motion with its slots numbered as ``layout`` does: by the joints that own them, in file order."""
+    skeleton = motion.skeleton
+    if not len(skeleton.frame_slots):
+        return motion
+    rotations = np.zeros((len(pose), len(layout.slot_joints), 4))
+    rotations[..., 3] = 1
+    for slot, joint in enumerate(layout.slot_joints.tolist()):
+        children = skeleton.children[joint]
+        if children and skeleton.slots[children[0]] >= 0:
+            rotations[:, slot] = pose.rotations[:, skeleton.slots[children[0]]]
+    source = Pose(read_only(rotations), pose.translated, pose.translations, layout)
+    return replace(
+        motion, skeleton=_skeleton_of(skeleton, layout, range(skeleton.joint_count)), source=source
+    )
+
+
+def _needed_only(motion: Motion, dummies: Sequence[int]) -> Motion:
+    """The motion, whose layout fits, without those ``dummies`` that the post-rotation form can do without."""
+    layout, pose = cast(ChannelLayout, motion.layout), motion.pose
+    names, parents = list(layout.names), list(layout.parents)
+    rotations = pose.rotations.copy()
+    for dummy in dummies:
+        parent = parents[dummy]
+        above, own = layout.owned_slots[[parent, dummy]]
+        turns = np.abs(rotations[:, own, :3]).max(initial=0) > _STILL
+        if turns and parents.count(parent) > 1:
+            continue
+        if turns:
+            rotations[:, above] = multiply(rotations[:, above], rotations[:, own])
+            names[parent] = turning_freely(names[parent])
+        parents = [parent if entry == dummy else entry for entry in parents]
+        parents[dummy] = _GONE
+    kept = [joint for joint, parent in enumerate(parents) if parent != _GONE]
+    place = {joint: k for k, joint in enumerate(kept)} | {-1: -1}
+    lean = ChannelLayout(
+        tuple(names[joint] for joint in kept),
+        tuple(place[parents[joint]] for joint in kept),
+        layout.adds_offset,
+    )
+    owners = [kept[joint] for joint in lean.slot_joints.tolist()]
+    staying = [k for k, joint in enumerate(pose.translated.tolist()) if joint in place]
+    source = Pose(
+        read_only(np.ascontiguousarray(rotations[:, layout.owned_slots[owners]])),
+        np.array([place[joint] for joint in pose.translated[staying].tolist()], np.int32),
+        read_only(np.ascontiguousarray(pose.translations[:, staying])),
+        lean,
+    )
+    return replace(motion, skeleton=_skeleton_of(motion.skeleton, lean, kept), source=source)
+
+
+def _skeleton_of(skeleton: Skeleton, layout: ChannelLayout, kept: Sequence[int]) -> Skeleton:
+    """The post-rotation skeleton of the kept joints."""
+    return Skeleton.post_rotation(
+        [skeleton.names[joint] for joint in kept],
+        layout.parents,
+        skeleton.offsets[list(kept)],
+        ends=skeleton.ends[list(kept)],
+        turning=np.flatnonzero(np.diff(layout.starts)).tolist(),
+    )
