@@ -43,7 +43,10 @@ def motion_files(folder: str | os.PathLike[str]) -> list[str]:
     if not top.is_dir():
         what = "this is a file; read it with gmr.read" if top.exists() else "there is no such folder"
         raise FormatError(what, file=str(folder))
-    return sorted(_walk(top, "", set()), key=lambda path: path.split("/"))
+    try:
+        return sorted(_walk(top, "", set()), key=lambda path: path.split("/"))
+    except OSError as error:
+        raise FormatError(f"this folder cannot be read: {error.strerror}", file=error.filename) from error
 
 
 def read_folder(

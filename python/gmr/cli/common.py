@@ -1,0 +1,116 @@
+"""What commands share: how they end, what they say on stderr, how they find their inputs."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from gmr.errors import FormatWarning, GmrError
+
+if TYPE_CHECKING:
+    from gmr.motion import Motion
+
+__all__ = ["Failures", "files_of", "finished", "progress", "read_input", "read_noting", "say"]
+
+Item = TypeVar("Item")
+
+STDIO = "-"
+INTERRUPTED = 130
+
+
+def finished(command: click.Command, args: list[str] | None = None) -> int:
+    """Runs a command and tells its exit code; every expected trouble is one sentence on stderr."""
+    try:
+        code = command.main(args, standalone_mode=False)
+        sys.stdout.flush()
+    except click.ClickException as error:
+        error.show()
+        return error.exit_code
+    except (click.Abort, KeyboardInterrupt):
+        say("interrupted; no file was left half-written")
+        return INTERRUPTED
+    except BrokenPipeError:
+        # The reader has gone; without this Python complains once more while it shuts down.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except GmrError as error:
+        say(str(error))
+        return 1
+    return code if isinstance(code, int) else 0
+
+
+def say(sentence: str) -> None:
+    """One sentence on stderr."""
+    click.echo(f"gmr: {sentence}", err=True)
+
+
+class Failures:
+    """The inputs that failed, each named on stderr as it happens."""
+
+    def __init__(self) -> None:
+        self.errors: dict[str, str] = {}
+
+    @contextmanager
+    def of(self, name: str) -> Iterator[None]:
+        """Work on the input ``name``; an error that gmr raises is said, kept, and passed over."""
+        try:
+            yield
+        except GmrError as error:
+            self.errors[name] = str(error)
+            say(str(error))
+
+    def exit_code(self) -> int:
+        """1 where an input failed, else 0."""
+        return 1 if self.errors else 0
+
+
+def files_of(path: str) -> list[Path | str]:
+    """The files that an argument means: itself, ``-``, or for a folder all motions in it.
+
+    Raises:
+        GmrError: a folder without motions.
+    """
+    if path == STDIO or not Path(path).is_dir():
+        return [path]
+    from gmr.formats import motion_files
+    from gmr.formats.registry import suffixes
+
+    found = motion_files(path)
+    if not found:
+        raise GmrError(f"{path}: no motion in this folder or those below ({', '.join(suffixes())})")
+    return [Path(path, file) for file in found]
+
+
+def read_input(path: Path | str, **options: Any) -> Motion:
+    """The motion of a file, or of standard input for ``-``."""
+    from gmr.formats import read
+
+    if path == STDIO:
+        return read(sys.stdin.buffer, **options).with_name("<stdin>")
+    return read(path, **options)
+
+
+def read_noting(path: Path | str, **options: Any) -> tuple[Motion, list[str]]:
+    """The motion, and the oddities of its file that reading warned of."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", FormatWarning)
+        motion = read_input(path, **options)
+    return motion, [str(warning.message) for warning in caught if issubclass(warning.category, FormatWarning)]
+
+
+@contextmanager
+def progress(items: Iterable[Item], label: str) -> Iterator[Iterable[Item]]:
+    """The items, counted by a bar on stderr where someone watches and there are several."""
+    held = list(items)
+    if len(held) < 2 or not sys.stderr.isatty():
+        yield held
+        return
+    with click.progressbar(held, label=label, file=sys.stderr) as bar:
+        yield bar

@@ -1,0 +1,188 @@
+"""``gmr convert``: motions in, motions out."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from gmr.cli.common import STDIO, Failures, files_of, progress, read_noting, say
+
+if TYPE_CHECKING:
+    from gmr.motion import Motion
+
+__all__ = ["convert"]
+
+
+class _Unit(click.ParamType[float]):
+    """A unit of length, by its name or in metres."""
+
+    name = "UNIT"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        from gmr.errors import GmrError
+        from gmr.units import metres_per_unit
+
+        try:
+            return metres_per_unit(value)
+        except GmrError as error:
+            self.fail(str(error), param, ctx)
+
+
+class _Rate(click.ParamType[float]):
+    """Frames a second, above 0."""
+
+    name = "FPS"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        try:
+            rate = float(value)
+        except ValueError:
+            self.fail(f"'{value}' is no number of frames a second", param, ctx)
+        if not 0 < rate < float("inf"):
+            self.fail(f"{value} frames a second cannot be; give a rate above 0", param, ctx)
+        return rate
+
+
+@dataclass(frozen=True)
+class _Changes:
+    """What is to be done to each motion."""
+
+    fps: float | None
+    unit: float | None
+    from_unit: float | None
+    drop_dummies: bool
+    mirror: bool
+
+
+@click.command(short_help="Convert motions: rate, unit, mirror image, dummies.")
+@click.argument("source", metavar="IN")
+@click.argument("target", metavar="OUT")
+@click.option("--fps", type=_Rate(), help="Resample to this rate: rotations by slerp.")
+@click.option("--unit", type=_Unit(), help="Convert to this unit: m, cm, mm, in, ft, cmu or metres per unit.")
+@click.option(
+    "--from-unit",
+    type=_Unit(),
+    help="The unit that IN is in; guessed from the body's height, and said, otherwise.",
+)
+@click.option("--mirror", is_flag=True, help="Write the mirror image, left for right.")
+@click.option(
+    "--drop-dummies", is_flag=True, help="Leave out zero-length joints, all but those that BVH needs."
+)
+@click.option(
+    "--positions", type=click.Choice(["replace", "add"]), default="replace", show_default=True,
+    help="What position channels do to a joint's OFFSET.",
+)  # fmt: skip
+@click.option("--strict", is_flag=True, help="Refuse what is otherwise read with a note.")
+def convert(
+    source: str,
+    target: str,
+    fps: float | None,
+    unit: float | None,
+    from_unit: float | None,
+    mirror: bool,
+    drop_dummies: bool,
+    positions: str,
+    strict: bool,
+) -> int:
+    """Convert a motion, or a folder of them.
+
+    IN is a file, a folder (then OUT is one too, and gets the same tree) or - for standard input; OUT - is
+    standard output. Without options every value is written as it was read. A file is replaced when its
+    successor is whole.
+
+    \b
+    Examples:
+      gmr convert walk.bvh walk60.bvh --fps 60
+      gmr convert takes/ mirrored/ --mirror
+      gmr convert cmu.bvh metres.bvh --from-unit cmu --unit m
+      gmr convert walk.bvh lean.bvh --drop-dummies
+      gmr convert - - --fps 30 < walk.bvh > walk30.bvh
+    """
+    changes = _Changes(fps, unit, from_unit, drop_dummies, mirror)
+    failures = Failures()
+    with progress(_jobs(source, target), "Converting") as watched:
+        for path, out in watched:
+            with failures.of(str(path)):
+                motion, warnings = read_noting(path, positions=positions, strict=strict)
+                for warning in warnings:
+                    say(warning)
+                _write(_changed(motion, changes), out)
+    return failures.exit_code()
+
+
+def _jobs(source: str, target: str) -> list[tuple[Path | str, Path | str]]:
+    """Each input with the place that it goes to."""
+    if source != STDIO and Path(source).is_dir():
+        if target == STDIO or Path(target).is_file():
+            raise click.UsageError(f"'{source}' is a folder, so OUT must be a folder too, not '{target}'")
+        return [(path, Path(target, Path(path).relative_to(source))) for path in files_of(source)]
+    if target != STDIO and Path(target).is_dir():
+        if source == STDIO:
+            raise click.UsageError(f"'{target}' is a folder; name the file to write")
+        return [(source, Path(target, Path(source).name))]
+    if target != STDIO:
+        _check_suffix(target)
+    return [(source, target)]
+
+
+def _check_suffix(target: str) -> None:
+    """Refuses a place that no format has the suffix of before anything is read."""
+    from gmr.errors import FormatError
+    from gmr.formats.registry import format_of_file
+
+    try:
+        format_of_file(target)
+    except FormatError as error:
+        raise click.UsageError(str(error)) from error
+
+
+def _changed(motion: Motion, changes: _Changes) -> Motion:
+    """The motion after all that was asked for."""
+    if changes.mirror:
+        motion = motion.mirror()
+    if changes.drop_dummies:
+        motion = motion.drop_dummies()
+    if changes.fps is not None:
+        motion = motion.resample(changes.fps)
+    if changes.unit is not None:
+        motion = _in_known_unit(motion, changes.from_unit).to_unit(changes.unit)
+    return motion
+
+
+def _in_known_unit(motion: Motion, stated: float | None) -> Motion:
+    """The motion with the unit stated, or guessed and said."""
+    from gmr.errors import GmrError
+    from gmr.guesses import guess_unit
+
+    if stated is not None:
+        return motion.with_unit(stated)
+    if motion.unit is not None:
+        return motion
+    guess = guess_unit(motion)
+    if guess is None:
+        raise GmrError(f"{motion.name}: no unit makes this body a human's height; state it with --from-unit")
+    say(
+        f"{motion.name}: taken to be in {guess.name} ({guess.metres:.4g} m), for then the body is "
+        f"{guess.body_metres:.2f} m tall; state another with --from-unit"
+    )
+    return motion.with_unit(guess.metres)
+
+
+def _write(motion: Motion, out: Path | str) -> None:
+    from gmr.errors import GmrError
+    from gmr.formats import write
+
+    if out == STDIO:
+        write(motion, sys.stdout.buffer)
+        sys.stdout.buffer.flush()
+        return
+    if isinstance(out, Path):
+        try:
+            out.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise GmrError(f"{out}: its folder cannot be made: {error.strerror}") from error
+    write(motion, out)

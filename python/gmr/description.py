@@ -1,0 +1,138 @@
+"""What is in a motion, and what is odd about it, as plain values."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gmr.channels import POSITIONS, ROTATIONS
+from gmr.guesses import UnitGuess, UpGuess, body_height, guess_unit, guess_up
+from gmr.resample import nominal_fps
+from gmr.skeleton import End
+from gmr.tpose import leading_rest_frames
+
+if TYPE_CHECKING:
+    from gmr.motion import Motion
+
+__all__ = ["Description", "describe"]
+
+
+@dataclass(frozen=True)
+class Description:
+    """A motion in words and numbers; angles in degrees, lengths in file units, times in seconds."""
+
+    frames: int
+    frame_time: float
+    fps: float
+    seconds: float
+    joints: tuple[str, ...]
+    ends: int
+    """End sites, which are joints too."""
+    roots: tuple[str, ...]
+    dummies: tuple[str, ...]
+    channels: int
+    """Numbers in a row."""
+    orders: dict[str, int]
+    """How many joints have each set of channels, such as "Xposition Yposition Zposition Zrotation"."""
+    moving: tuple[str, ...]
+    """Joints other than roots with position channels."""
+    unit: float | None
+    unit_guess: UnitGuess | None
+    height: float | None
+    up_guess: UpGuess | None
+    leading_rest_frames: int
+    oddities: tuple[str, ...]
+    """One sentence for each thing that is unusual."""
+
+
+def describe(motion: Motion, warnings: Sequence[str] = ()) -> Description:
+    """What is in ``motion`` and what is odd about it.
+
+    Args:
+        motion: any.
+        warnings: what reading it warned of; these come first among the oddities.
+    """
+    skeleton, layout = motion.skeleton, motion.layout
+    up = guess_up(motion)
+    height = body_height(motion, "XYZ".index(up.axis[1])) if up else None
+    named = layout.names if layout else ()
+    rest = leading_rest_frames(motion)
+    return Description(
+        frames=motion.frame_count,
+        frame_time=motion.frame_time,
+        fps=nominal_fps(motion) if motion.frame_time else 0.0,
+        seconds=motion.duration,
+        joints=skeleton.names,
+        ends=int((skeleton.ends == End.SITE).sum()),
+        roots=motion.roots,
+        dummies=motion.dummies,
+        channels=layout.column_count if layout else 0,
+        orders=dict(Counter(" ".join(channels) for channels in named if channels).most_common()),
+        moving=tuple(skeleton.names[j] for j in motion.translated.tolist() if skeleton.parents[j] >= 0),
+        unit=motion.unit,
+        unit_guess=guess_unit(motion),
+        height=height,
+        up_guess=up,
+        leading_rest_frames=rest,
+        oddities=(*warnings, *_oddities(motion, rest, up)),
+    )
+
+
+def _oddities(motion: Motion, rest: int, up: UpGuess | None) -> list[str]:
+    """A sentence for each unusual thing, in the order of the file."""
+    skeleton = motion.skeleton
+    names = Counter(name for name, end in zip(skeleton.names, skeleton.ends, strict=True) if end == End.JOINT)
+    found = []
+    if repeated := [name for name, count in names.items() if count > 1]:
+        found.append(f"several joints share a name: {_listed(repeated)}")
+    if tips := int((skeleton.ends == End.TIP).sum()):
+        found.append(f"{tips} turning leaves have no End Site; a zero-length tip stands for it")
+    if len(motion.roots) > 1:
+        found.append(f"{len(motion.roots)} roots: {_listed(motion.roots)}")
+    found += _channel_oddities(motion)
+    if motion.frame_count == 0:
+        found.append("no frames: a skeleton alone")
+    elif motion.frame_count == 1:
+        found.append("a single frame: a pose, not a recording")
+    if motion.frame_time == 0 and motion.frame_count:
+        found.append("frame time 0: the frames have no duration")
+    if rest:
+        frames = "frame 0 is a T-pose" if rest == 1 else f"frames 0 to {rest - 1} are rest poses"
+        found.append(f"{frames} that a converter added and nobody recorded; evaluation leaves that out")
+    if up is not None and up.sure and up.axis != "+Y":
+        found.append(f"the body stands along {up.axis}, not +Y, which gmr takes as up")
+    if broken := int((~np.isfinite(motion.rows if motion.layout else motion.rotations)).sum()):
+        found.append(f"{broken} values are not finite")
+    return found
+
+
+def _channel_oddities(motion: Motion) -> list[str]:
+    """What is unusual about the channels."""
+    layout = motion.layout
+    if layout is None:
+        return []
+    turns = [[name for name in channels if name.lower() in ROTATIONS] for channels in layout.names]
+    orders = Counter("".join(name[0].upper() for name in joint) for joint in turns if len(joint) == 3)
+    found = []
+    if len(orders) > 1:
+        counted = ", ".join(f"{order} ({count})" for order, count in orders.most_common())
+        found.append(f"rotation orders differ between joints: {counted}")
+    if few := sum(0 < len(joint) < 3 for joint in turns):
+        found.append(f"{few} joints have fewer than three rotation channels")
+    if any(_rotates_first(channels) for channels in layout.names):
+        found.append("rotation channels come before position channels")
+    return found
+
+
+def _rotates_first(channels: Sequence[str]) -> bool:
+    places = [name.lower() in POSITIONS for name in channels]
+    return any(places) and not places[0]
+
+
+def _listed(names: Sequence[str], limit: int = 6) -> str:
+    shown = ", ".join(names[:limit])
+    return shown if len(names) <= limit else f"{shown} and {len(names) - limit} more"
