@@ -80,11 +80,14 @@ fn write_value(stage: &mut [u8; STAGE], at: usize, value: f64) -> usize {
 /// No two decimals of at most 15 digits share an `f64`, so this one without its last zeros is the shortest.
 #[inline]
 fn eight_places(value: f64) -> Option<(u32, u32)> {
-    if value >= 1e7 {
+    // From 2^52 on doubles are whole numbers: adding it rounds, and leaves the number in the mantissa's bits.
+    const WHOLE: f64 = (1_u64 << 52) as f64;
+    let scaled = value * 1e8 + WHOLE;
+    if value >= 1e7 || (scaled - WHOLE) / 1e8 != value {
         return None;
     }
-    let scaled = (value * 1e8 + 0.5) as u64;
-    (scaled as f64 / 1e8 == value).then_some(((scaled / 100_000_000) as u32, (scaled % 100_000_000) as u32))
+    let number = scaled.to_bits() - WHOLE.to_bits();
+    Some(((number / 100_000_000) as u32, (number % 100_000_000) as u32))
 }
 
 #[inline]
