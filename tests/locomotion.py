@@ -65,7 +65,7 @@ def walked(
         answer: speed and turn rate reached, from those asked for.
         rows: (T, S) the frames shown; the dataset's from the first on, round and round, where not given.
     """
-    lengths = np.array([round(trial.seconds * RATE) for trial in trials])
+    lengths = np.array([round(trial.seconds * RATE) + 1 for trial in trials])
     steps = int(lengths.max())
     asked = np.stack([_requests(trial, steps) for trial in trials])
     requests, which = np.unique(asked.reshape(-1, 2), axis=0, return_inverse=True)

@@ -67,7 +67,7 @@ def test_the_offset_of_a_character_that_lags_is_its_lag_along_the_track() -> Non
     table = trials_table("set", straight, "time", late, transitions_of(log, WALK), WALK)
     for name in ("offset_mean", "offset_rms", "offset_p95", "offset_max", "offset_final"):
         np.testing.assert_allclose(table[name], 0.5, err_msg=name)
-    np.testing.assert_allclose(table["offset_sum"], 0.5 * 30 * RATE)
+    np.testing.assert_allclose(table["offset_sum"], 0.5 * (30 * RATE + 1))
     np.testing.assert_allclose(table["along_track_mean"], -0.4)
     np.testing.assert_allclose(table["cross_track_mean"], 0.3)
 
@@ -76,7 +76,7 @@ def test_the_offset_grows_with_a_wrong_speed() -> None:
     straight = constant_trials((2.0,), (0.0,))
     log = walked(straight, WALK, lambda speed, turn: Gait(speed - 0.1, turn))
     table = trials_table("set", straight, "time", log, transitions_of(log, WALK), WALK)
-    samples = 0.1 * (5 + np.arange(1800) / RATE)
+    samples = 0.1 * (5 + np.arange(1801) / RATE)
     np.testing.assert_allclose(table["offset_final"], samples[-1])
     np.testing.assert_allclose(table["offset_max"], samples[-1])
     np.testing.assert_allclose(table["offset_mean"], np.mean(samples))

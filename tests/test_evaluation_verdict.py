@@ -70,8 +70,10 @@ def test_a_dataset_of_straight_clips_is_told_so() -> None:
         "no clip moves like that, and the character turns 75 degrees/s too slowly"
     )
     assert (
-        "Capture next: left and right turns at 1 to 3 m/s "
-        "(a walk, a jog and a run, on circles of 0.57 to 3.4 m radius)." in said.sentences
+        "Capture next: turns to the left and to the right at "
+        "a walk (1 to 1.5 m/s, circles of 0.57 to 1.7 m radius), "
+        "a jog (2 m/s, circles of 1.1 to 2.3 m radius) and "
+        "a run (2.5 to 3 m/s, circles of 1.4 to 3.4 m radius)." in said.sentences
     )
     assert "One side of the turns is enough when mirrored copies are used (--mirror)." in said.sentences
     assert "Every clip is played at least once." in said.sentences
@@ -83,10 +85,19 @@ def test_a_hole_at_one_speed_is_named() -> None:
     assert "Straight ahead it keeps 1, 1.5, 2.5 and 3 m/s, but not 2 m/s." in said.sentences
     straight = next(sentence for sentence in said.sentences if "going straight at 2 m/s" in sentence)
     assert "(1 trial): no clip moves like that, and the character goes 0.5 m/s too slowly" in straight
-    assert any(
-        sentence.startswith("Capture next: left and right turns at 2 m/s (a jog,")
-        and sentence.endswith("; straight lines at 2 m/s (a jog).")
-        for sentence in said.sentences
+    assert (
+        "Capture next: turns to the left and to the right at a jog (2 m/s, circles of 1.1 to 2.3 m radius); "
+        "straight lines at a jog (2 m/s)." in said.sentences
+    )
+
+
+def test_a_speed_that_is_held_without_a_clip_of_it_is_named() -> None:
+    holed = {name: arc for name, arc in EVERYTHING.items() if arc.speed != 2.0}
+    said = judged(holed)
+    assert "Straight ahead it keeps 1 to 3 m/s throughout." in said.sentences
+    assert (
+        "It keeps 2 m/s straight ahead only by switching between slower and faster clips: "
+        "they hold less than 1 second of such movement." in said.sentences
     )
 
 
@@ -96,12 +107,17 @@ def test_what_only_one_side_lacks_is_named_with_its_side() -> None:
     assert said.headline.endswith(
         "it is good for going straight and turning up to 100 degrees/s to the left at 1 to 3 m/s."
     )
-    assert (
-        "The clips turn left for 40 seconds but right for only 0 seconds; "
-        "mirrored copies (--mirror) make both sides alike at no cost." in said.sentences
-    )
+    assert "The clips turn left for 40 seconds but right for only 0 seconds." in said.sentences
     assert any("turning right, though not left, by 50 to 100 degrees/s" in text for text in said.sentences)
-    assert any("Capture next: right turns at 1 to 3 m/s" in text for text in said.sentences)
+    assert any(text.startswith("Turns that fail to one side only need no capture") for text in said.sentences)
+    assert not any(text.startswith("Capture next") for text in said.sentences)
+
+
+def test_a_mirrored_dataset_is_not_told_to_be_mirrored() -> None:
+    clips = {"a.bvh": Arc(40.0, 1.0), "a.bvh (mirrored)": Arc(40.0, 1.0, mirrored=True)}
+    said = judged(clips, lambda speed, turn: Gait(speed, max(turn, 0.0)))
+    assert "--mirror" not in str(said)
+    assert any(text.startswith("Capture next: turns to the right at a walk") for text in said.sentences)
 
 
 def test_walking_backwards_does_not_count_as_covering_a_speed() -> None:
@@ -184,3 +200,17 @@ def test_the_same_tables_give_the_same_words(seed: int) -> None:
         return Gait(abs(speed + noise[which]), turn + 20 * noise[which])
 
     assert judged(EVERYTHING, erratic) == judged(EVERYTHING, erratic)
+
+
+def test_clips_are_named_without_the_folder_that_all_are_in() -> None:
+    clips = {
+        "set/walk/a.bvh": Arc(40.0, 1.0),
+        "set/walk/b.bvh": Arc(5.0, 1.0),
+        "set/run/a.bvh": Arc(4.0, 1.0),
+    }
+    sentences = judged(clips).sentences
+    assert "Half of the time and more is played from 1 of 3 clips: walk/a.bvh (100%)." in sentences
+    assert (
+        "2 clips of 3 are never played (9 seconds, 18% of the material): walk/b.bvh and run/a.bvh."
+        in sentences
+    )

@@ -16,8 +16,11 @@ from gmr.errors import (
 )
 
 if TYPE_CHECKING:
+    from gmr import evaluation, matching
     from gmr.channels import ChannelLayout
     from gmr.concatenate import concatenate
+    from gmr.evaluation.evaluate import evaluate
+    from gmr.evaluation.result import Evaluation
     from gmr.formats import read, read_folder, write
     from gmr.motion import Motion
     from gmr.skeleton import Skeleton
@@ -25,6 +28,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ChannelLayout",
     "DatasetError",
+    "Evaluation",
     "FormatError",
     "FormatWarning",
     "GmrError",
@@ -34,6 +38,9 @@ __all__ = [
     "SkeletonError",
     "__version__",
     "concatenate",
+    "evaluate",
+    "evaluation",
+    "matching",
     "read",
     "read_folder",
     "write",
@@ -42,14 +49,16 @@ __all__ = [
 # What needs NumPy is imported when first used, so that `gmr --help` answers at once.
 _HOMES = {
     "ChannelLayout": "gmr.channels",
+    "Evaluation": "gmr.evaluation.result",
     "Motion": "gmr.motion",
     "Skeleton": "gmr.skeleton",
     "concatenate": "gmr.concatenate",
+    "evaluate": "gmr.evaluation.evaluate",
     "read": "gmr.formats",
     "read_folder": "gmr.formats",
     "write": "gmr.formats",
 }
-_MODULES: frozenset[str] = frozenset()
+_MODULES = frozenset({"evaluation", "matching"})
 
 
 def __getattr__(name: str) -> Any:

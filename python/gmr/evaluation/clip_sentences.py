@@ -37,13 +37,21 @@ class _Clips:
             ],
             str,
         )
-        names, which = np.unique(own, return_inverse=True)
+        names, which = np.unique(_below_their_common_folder(own.tolist()), return_inverse=True)
         seconds = np.bincount(which, np.where(clips["mirrored"], 0.0, clips["seconds"]), len(names))
         share = np.bincount(which, clips["played_share"], len(names))
         order = np.lexsort((names, -seconds, -share))
         return cls(
             names[order].tolist(), *(per_clip[order].astype(np.float64) for per_clip in (seconds, share))
         )
+
+
+def _below_their_common_folder(names: list[str]) -> list[str]:
+    parts = [name.split("/") for name in names]
+    shared = 0
+    while all(len(part) > shared + 1 for part in parts) and len({part[shared] for part in parts}) == 1:
+        shared += 1
+    return ["/".join(part[shared:]) for part in parts]
 
 
 def clip_sentences(clips: Table, usage: Table) -> Iterator[str]:
@@ -64,9 +72,8 @@ def _carrying(clips: _Clips) -> str:
     if len(clips.names) == 1:
         return f"All of the time is played from the one clip, {clips.names[0]}."
     most = "is played from" if carrying > 1 else "and more is played from"
-    led = "led by " if carrying > MOST_NAMES else ""
-    named = led_by if led else led_by[:carrying]
-    return f"Half of the time {most} {carrying} of {count(len(clips.names), 'clip')}: {led}{listing(named)}."
+    named = f", led by {listing(led_by)}" if carrying > MOST_NAMES else f": {listing(led_by[:carrying])}"
+    return f"Half of the time {most} {carrying} of {count(len(clips.names), 'clip')}{named}."
 
 
 def _never_played(clips: _Clips) -> str:

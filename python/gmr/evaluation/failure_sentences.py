@@ -8,26 +8,37 @@ from typing import Final
 import numpy as np
 
 from gmr.evaluation.regions import EITHER, LEFT, RIGHT, STRAIGHT, Grid, Region
-from gmr.evaluation.words import circles, count, duration, gait, listing, number, span
+from gmr.evaluation.words import GAITS, circles, count, duration, gait_of, listing, number, span
 
 __all__ = ["capture_sentences", "failure_sentences"]
 
 MOST_REGIONS: Final = 3
 
+SMALLEST_SHARE: Final = 0.03
+"""Regions with a smaller share of the trials are counted, not described."""
+
 
 def failure_sentences(grid: Grid, regions: Sequence[Region]) -> Iterator[str]:
     """Say of the largest regions what is asked there, what the clips have of it, and what goes wrong."""
-    for region in regions[:MOST_REGIONS]:
+    told = _worth_telling(grid, regions)
+    for region in told:
         cells = tuple(region.cells.T)
         yield (
             f"It fails when {_movement(grid, region)} ({count(len(region.cells), 'trial')}): "
             f"{_clips_there(grid, region)}, and the character {_symptom(grid, region)} "
             f"(mean distance from the path {_range(grid.offset[cells])} m)."
         )
-    if others := regions[MOST_REGIONS:]:
-        trials = sum(len(region.cells) for region in others)
-        verb = "fails" if trials == 1 else "fail"
-        yield f"{count(trials, 'more trial')} {verb} here and there on the grid."
+    others = sum(len(region.cells) for region in regions) - sum(len(region.cells) for region in told)
+    if others:
+        verb = "fails" if others == 1 else "fail"
+        yield f"{count(others, 'more trial')} {verb} here and there on the grid."
+
+
+def _worth_telling(grid: Grid, regions: Sequence[Region]) -> list[Region]:
+    """The largest regions; small ones about the rim of others would only repeat them."""
+    least = SMALLEST_SHARE * grid.held.size
+    large = [region for region in regions if region.side == STRAIGHT or len(region.cells) >= least]
+    return (large or list(regions))[:MOST_REGIONS]
 
 
 def _movement(grid: Grid, region: Region) -> str:
@@ -80,16 +91,25 @@ def _range(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
 
 def capture_sentences(grid: Grid, regions: Sequence[Region], mirrored: bool) -> Iterator[str]:
     """Say what to capture next: the failing movements that the clips hardly contain."""
-    lacking = [
-        Region(region.side, region.cells[grid.seconds[tuple(region.cells.T)] < grid.limits.covered])
-        for region in regions
-    ]
-    lacking = sorted(filter(lambda region: len(region.cells), lacking), key=lambda region: -len(region.cells))
-    if lacking:
-        yield f"Capture next: {'; '.join(_to_capture(grid, region) for region in lacking[:MOST_REGIONS])}."
-        if not mirrored and any(region.side == EITHER for region in lacking[:MOST_REGIONS]):
-            yield "One side of the turns is enough when mirrored copies are used (--mirror)."
-    elif regions:
+    lacking = [_lacking(grid, region) for region in regions]
+    lacking = sorted(
+        (region for region in lacking if len(region.cells)), key=lambda region: -len(region.cells)
+    )
+    told = _worth_telling(grid, lacking)
+    to_mirror = [region for region in told if region.side in (LEFT, RIGHT) and not mirrored]
+    to_capture = [region for region in told if region not in to_mirror]
+    if to_capture:
+        yield f"Capture next: {'; '.join(_to_capture(grid, region) for region in to_capture)}."
+    if not mirrored and any(region.side == EITHER for region in to_capture):
+        yield "One side of the turns is enough when mirrored copies are used (--mirror)."
+    if to_mirror:
+        yield (
+            "Turns that fail to one side only need no capture: mirrored copies of the clips (--mirror) bring "
+            "what the other side has."
+        )
+    if told:
+        return
+    if regions:
         yield (
             "Every movement that fails is in the clips already, so more of the same may not help: the replay "
             "of the worst trial shows what breaks, and takes that lead from one movement into the next are "
@@ -99,12 +119,22 @@ def capture_sentences(grid: Grid, regions: Sequence[Region], mirrored: bool) -> 
         yield "Nothing on this grid needs another capture."
 
 
+def _lacking(grid: Grid, region: Region) -> Region:
+    return Region(region.side, region.cells[grid.seconds[tuple(region.cells.T)] < grid.limits.covered])
+
+
 def _to_capture(grid: Grid, region: Region) -> str:
     speeds = grid.speeds[region.cells[:, 0]]
-    turns = np.abs(grid.turn_rates_deg[region.cells[:, 1]])
-    how = f"at {span(speeds.min(), speeds.max(), 'm/s')} ({gait(speeds.min(), speeds.max())}"
-    if region.side == STRAIGHT:
-        return f"straight lines {how})"
-    way = {EITHER: "left and right", LEFT: "left", RIGHT: "right"}[region.side]
-    radii = speeds / np.radians(turns)
-    return f"{way} turns {how}, on {circles(radii.min(), radii.max())})"
+    turns = np.radians(np.abs(grid.turn_rates_deg[region.cells[:, 1]]))
+    what = {STRAIGHT: "straight lines", EITHER: "turns to the left and to the right"}.get(
+        region.side, f"turns to the {region.side}"
+    )
+    ways = []
+    for gait in GAITS:
+        chosen = np.array([gait_of(speed) == gait for speed in speeds.tolist()])
+        if chosen.any():
+            at = span(speeds[chosen].min(), speeds[chosen].max(), "m/s")
+            radii = speeds[chosen] / turns[chosen] if region.side != STRAIGHT else None
+            on = "" if radii is None else f", {circles(radii.min(), radii.max())}"
+            ways.append(f"{gait} ({at}{on})")
+    return f"{what} at {listing(ways)}"

@@ -78,7 +78,7 @@ class Log:
 
     @property
     def moving(self) -> NDArray[np.bool_]:
-        """(T, S) the recorded steps that are followed by another: those that have a speed."""
+        """(T, S) the recorded steps but the last: those that lead on to another, and so have a speed."""
         moving = self.recorded.copy()
         moving[:, :-1] &= self.recorded[:, 1:]
         moving[:, -1] = False

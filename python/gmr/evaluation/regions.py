@@ -164,7 +164,7 @@ def _runs(flags: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
         yield first, end - 1
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Region:
     """Failing trials that are neighbours on the grid.
 

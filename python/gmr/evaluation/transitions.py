@@ -61,7 +61,7 @@ def transitions_of(log: Log, frames: Frames) -> Transitions:
     """Find the transitions among the recorded steps."""
     before, after = log.row[:, :-1], log.row[:, 1:]
     plays_on = (after == before + 1) & frames.has_next[before]
-    trial, step = np.nonzero(~plays_on & log.recorded[:, 1:])
+    trial, step = np.nonzero(~plays_on & log.moving[:, 1:])
     step = step + 1
     from_row, to_row = log.row[trial, step - 1], log.row[trial, step]
     within = frames.clip[from_row] == frames.clip[to_row]

@@ -60,7 +60,7 @@ def trials_table(
         | _kinds(log, transitions)
         | {
             "clip_count": _clips_played(log, frames),
-            "seconds": log.recorded.sum(axis=1) / log.rate,
+            "seconds": log.moving.sum(axis=1) / log.rate,
         }
     )
 
@@ -108,7 +108,7 @@ def _changes(log: Log, transitions: Transitions) -> dict[str, NDArray[np.float64
     apart[transitions.trial, transitions.step] = transitions.discontinuity
     return {
         "transitions_per_second": _per_second(log, transitions.per_trial(len(log.row))),
-        "search_cost_mean": mean_where(cost, log.recorded & ~np.isnan(cost)),
+        "search_cost_mean": mean_where(cost, log.moving & ~np.isnan(cost)),
         "pose_discontinuity_mean": mean_where(apart, ~np.isnan(apart)),
     }
 
@@ -117,7 +117,7 @@ def _kinds(log: Log, transitions: Transitions) -> dict[str, NDArray[np.float64]]
     def rate(kind: int) -> NDArray[np.float64]:
         return _per_second(log, transitions.per_trial(len(log.row), kind))
 
-    searched = log.recorded & ~np.isnan(log.cost_pose)
+    searched = log.moving & ~np.isnan(log.cost_pose)
     return {
         "inter_clip_per_second": rate(INTER_CLIP),
         "intra_clip_per_second": rate(INTRA_CLIP),
@@ -128,7 +128,7 @@ def _kinds(log: Log, transitions: Transitions) -> dict[str, NDArray[np.float64]]
 
 
 def _per_second(log: Log, count: NDArray[np.int64]) -> NDArray[np.float64]:
-    seconds = log.recorded.sum(axis=1) / log.rate
+    seconds = log.moving.sum(axis=1) / log.rate
     return np.asarray(np.divide(count, seconds, out=np.full(len(count), np.nan), where=seconds > 0))
 
 
@@ -139,9 +139,6 @@ def _last(values: NDArray[np.float64], where: NDArray[np.bool_]) -> NDArray[np.f
 
 def _clips_played(log: Log, frames: Frames) -> NDArray[np.int64]:
     return np.array(
-        [
-            len(np.unique(frames.clip[rows[recorded]]))
-            for rows, recorded in zip(log.row, log.recorded, strict=True)
-        ],
+        [len(np.unique(frames.clip[rows[played]])) for rows, played in zip(log.row, log.moving, strict=True)],
         np.int64,
     )

@@ -16,8 +16,8 @@ __all__ = ["clips_table", "play_counts", "usage_table"]
 
 
 def play_counts(log: Log, frames: Frames) -> NDArray[np.int64]:
-    """(N,) at how many recorded steps each frame was shown."""
-    return np.bincount(log.row[log.recorded], minlength=len(frames))
+    """(N,) at how many recorded steps each frame was played."""
+    return np.bincount(log.row[log.moving], minlength=len(frames))
 
 
 def usage_table(dataset: str, scenario: str, counts: NDArray[np.int64], frames: Frames) -> Table:

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gmr.evaluation.clip_sentences import clip_sentences
 from gmr.evaluation.failure_sentences import capture_sentences, failure_sentences
@@ -96,9 +97,18 @@ def _straight_sentences(grid: Grid) -> Iterator[str]:
     elif not holds.any():
         yield "Straight ahead it keeps no speed of the grid."
     else:
-        kept = listing([f"{speed:g}" for speed in grid.speeds[holds]])
-        lost = listing([f"{speed:g}" for speed in grid.speeds[~holds]])
+        kept, lost = _speeds(grid.speeds[holds]), _speeds(grid.speeds[~holds])
         yield f"Straight ahead it keeps {kept} m/s, but not {lost} m/s."
+    bridged = grid.speeds[holds & (grid.seconds[:, column[0]] < grid.limits.covered)]
+    if len(bridged):
+        yield (
+            f"It keeps {_speeds(bridged)} m/s straight ahead only by switching between slower and faster "
+            f"clips: they hold less than {duration(grid.limits.covered)} of such movement."
+        )
+
+
+def _speeds(speeds: NDArray[np.float64]) -> str:
+    return listing([f"{speed:g}" for speed in speeds])
 
 
 def _side_sentences(coverage: Table, mirrored: bool) -> Iterator[str]:
@@ -114,7 +124,7 @@ def _side_sentences(coverage: Table, mirrored: bool) -> Iterator[str]:
         more, less = ("left", "right") if left > right else ("right", "left")
         yield (
             f"The clips turn {more} for {duration(max(left, right))} but {less} for only "
-            f"{duration(min(left, right))}; mirrored copies (--mirror) make both sides alike at no cost."
+            f"{duration(min(left, right))}."
         )
 
 

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from typing import Final
 
 __all__ = [
+    "GAITS",
     "circles",
     "count",
     "duration",
-    "gait",
+    "gait_of",
     "listing",
     "number",
     "percent",
@@ -21,6 +22,8 @@ __all__ = [
 FASTEST_WALK: Final = 1.75
 SLOWEST_RUN: Final = 2.25
 """Metres per second: people change from walking to running at about 2 m/s."""
+
+GAITS: Final = ("a walk", "a jog", "a run")
 
 
 def listing(parts: Sequence[str]) -> str:
@@ -37,14 +40,7 @@ def some_of(names: Sequence[str], most: int) -> str:
 
 def count(number: int, thing: str, things: str | None = None) -> str:
     """Count things in the right number: "no clips", "1 clip", "2 clips"."""
-    plural = things or f"{thing}s"
-    return (
-        f"{number:,} {thing}"
-        if number == 1
-        else f"{number or 'no'} {plural}"
-        if number < 1000
-        else (f"{number:,} {plural}")
-    )
+    return f"{number or 'no':{',' if number else ''}} {thing if number == 1 else things or f'{thing}s'}"
 
 
 def number(value: float) -> str:
@@ -67,7 +63,7 @@ def duration(seconds: float) -> str:
         return f"{number(seconds / 60)} minutes"
     if round(seconds, 1) in (0, 1):
         return "1 second" if seconds > 0.5 else "0 seconds"
-    return f"{seconds:.0f} seconds" if seconds >= 9.95 else f"{seconds:.1f} seconds"
+    return f"{seconds:.0f} seconds" if seconds >= 9.95 else f"{round(seconds, 1):g} seconds"
 
 
 def span(low: float, high: float, unit: str) -> str:
@@ -93,14 +89,9 @@ def turning(low_deg: float, high_deg: float) -> str:
     return f"going straight and turning up to {listing(sides)}"
 
 
-def gait(low: float, high: float) -> str:
-    """What people do at speeds from ``low`` to ``high``, metres per second."""
-    gaits = {
-        "a walk": low <= FASTEST_WALK,
-        "a jog": low < SLOWEST_RUN and high > FASTEST_WALK,
-        "a run": high >= SLOWEST_RUN,
-    }
-    return listing([name for name, reached in gaits.items() if reached])
+def gait_of(speed: float) -> str:
+    """What people do at a speed in metres per second: one of ``GAITS``."""
+    return GAITS[(speed > FASTEST_WALK) + (speed >= SLOWEST_RUN)]
 
 
 def circles(smallest: float, largest: float) -> str:

@@ -1,0 +1,260 @@
+"""From motions to an evaluation: read, build the database, run the trials, measure, judge."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+import numpy as np
+
+from gmr.errors import DatasetError, FormatWarning
+from gmr.evaluation.coverage import coverage_table
+from gmr.evaluation.frames import Frames
+from gmr.evaluation.log import Log
+from gmr.evaluation.regions import Limits
+from gmr.evaluation.replay import replay_of, worst_trial
+from gmr.evaluation.result import Evaluation, Summary, Tables
+from gmr.evaluation.scenario import DEFAULT_SPEEDS, DEFAULT_TURN_RATES_DEG, Trial, constant_trials
+from gmr.evaluation.transitions import transitions_of, transitions_table
+from gmr.evaluation.trials import trials_table
+from gmr.evaluation.usage import clips_table, play_counts, usage_table
+from gmr.evaluation.verdict import verdict
+from gmr.evaluation.words import some_of
+from gmr.formats.folder import read_folder
+from gmr.formats.registry import suffixes
+from gmr.matching.database import Database, named
+from gmr.matching.prepare import unit_text
+from gmr.matching.trial import Profile, Segment, Tracking, TrialLog, run_trials
+from gmr.motion import Motion
+
+if TYPE_CHECKING:
+    from gmr.errors import GmrError
+
+__all__ = ["Source", "evaluate"]
+
+Source: TypeAlias = "str | os.PathLike[str] | Iterable[Motion] | Mapping[str, Motion]"
+Progress: TypeAlias = Callable[[str, int, int], object]
+
+
+def evaluate(
+    source: Source,
+    *,
+    preset: str | None = None,
+    mirror: bool = False,
+    tracking: Tracking = "time",
+    speeds: Sequence[float] | None = None,
+    turn_rates_deg: Sequence[float] | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    names: Mapping[str, str | int] | None = None,
+    unit: float | str | None = None,
+    errors: Literal["raise", "collect"] = "collect",
+) -> Evaluation:
+    """Measure what a set of locomotion clips can do.
+
+    A character made of the clips is sent along paths of constant speed and turn rate by motion matching; the
+    tables say how well it kept to them, which frames it used, and which speeds and turn rates the clips hold.
+
+    Args:
+        source: a folder of motion files, or motions, by name or with names of their own.
+        preset: pacing of the trials: "mig2022" for the durations of the paper's authors; by default every
+            trial has 3 s of run-up, 2 s to settle and 30 s that are recorded.
+        mirror: add the mirror image of each clip.
+        tracking: "time": the character is steered to where the path has it at each time; "velocity": it is
+            only asked for the speed and turn rate.
+        speeds: metres per second; 1 to 3 in steps of 0.25 by default.
+        turn_rates_deg: degrees per second, positive to the left; -100 to 100 in steps of 25 by default.
+        threads: all cores by default; the result does not depend on it.
+        progress: called with the name of a phase ("reading", "preparing", "simulating", "measuring"), how
+            much of it is done, and of how much; what it raises ends the evaluation.
+        names: joints by role where they are not found by themselves: ``{"left_foot": "foot_l"}``.
+        unit: metres per file unit (or "cm", ...) of files that do not say; guessed from the body by default.
+        errors: "collect": files that cannot be used are left out and named in ``failed``; "raise": the first
+            of them ends the evaluation.
+
+    Returns:
+        The evaluation; the same motions and settings give the same tables.
+
+    Raises:
+        DatasetError: there is no motion, none is usable, or hips, legs or feet are not found.
+        FormatError: there is no such folder; or a file cannot be read and ``errors`` is "raise".
+        ValueError: a speed, turn rate, preset, tracking or thread count that makes no sense.
+    """
+    if tracking not in ("time", "velocity"):
+        raise ValueError(f"unknown tracking {tracking!r}; known are time, velocity")
+    if threads is not None and threads < 1:
+        raise ValueError(f"there must be at least 1 thread, not {threads}")
+    trials = constant_trials(
+        speeds or DEFAULT_SPEEDS, turn_rates_deg or DEFAULT_TURN_RATES_DEG, preset or "even"
+    )
+    tell = progress or _silent
+    with _format_warnings() as odd:
+        dataset, motions, failed = _motions(source, threads, errors, tell)
+    tell("preparing", 0, 1)
+    database = Database.build(motions, mirror=mirror, names=names, unit=unit)
+    if database.excluded and errors == "raise":
+        name, why = next(iter(database.excluded.items()))
+        raise DatasetError(f"{name}: {why}")
+    tell("preparing", 1, 1)
+    log = run_trials(
+        database,
+        [_profile(trial) for trial in trials],
+        tracking=tracking,
+        threads=threads or 0,
+        progress=lambda done, of: tell("simulating", done, of),
+    )
+    tell("measuring", 0, 1)
+    settings = {
+        "preset": preset or "even",
+        "mirror": mirror,
+        "tracking": tracking,
+        "speeds": sorted({trial.speed for trial in trials}),
+        "turn_rates_deg": sorted({trial.turn_rate_deg for trial in trials}),
+        "limits": asdict(Limits()),
+    }
+    summary = _summary(dataset, database, motions, unit, settings)
+    notes = (*odd, *database.notes)
+    found = _measured(summary, database, trials, log, notes, failed | dict(database.excluded))
+    tell("measuring", 1, 1)
+    return found
+
+
+def _measured(
+    summary: Summary,
+    database: Database,
+    trials: Sequence[Trial],
+    trial_log: TrialLog,
+    notes: tuple[str, ...],
+    failed: Mapping[str, str],
+) -> Evaluation:
+    dataset, frames = summary.dataset, _frames(database)
+    log = Log.of({name: getattr(trial_log, name) for name in _COLUMNS}, database.rate)
+    transitions = transitions_of(log, frames)
+    counts = play_counts(log, frames)
+    tables = Tables(
+        trials=trials_table(dataset, trials, trial_log.tracking, log, transitions, frames),
+        coverage=coverage_table(dataset, frames),
+        usage=usage_table(dataset, "constant", counts, frames),
+        transitions=transitions_table(dataset, "constant", transitions, frames),
+        clips=clips_table(dataset, counts, frames),
+    )
+    said = verdict(tables.trials, tables.coverage, tables.clips, tables.usage, notes=notes, failed=failed)
+    replay = replay_of(database, trial_log, log, frames, trials, worst_trial(tables.trials))
+    return Evaluation(dataset, tables, summary, said, replay, notes, failed)
+
+
+_COLUMNS = (
+    *("lengths", "recorded_from", "x", "z", "heading", "ref_x", "ref_z", "ref_heading", "ref_speed"),
+    *("ref_turn_rate", "row", "status", "cost_pose", "cost_trajectory", "discontinuity"),
+)
+
+
+def _motions(
+    source: Source, threads: int | None, errors: Literal["raise", "collect"], tell: Progress
+) -> tuple[str, dict[str, Motion], dict[str, str]]:
+    """The dataset's name, its motions by name, and what could not be read and why."""
+    if not isinstance(source, str | os.PathLike):
+        motions = named(source)
+        if not motions:
+            raise DatasetError("there is no motion to evaluate; give at least one")
+        return "motions", motions, {}
+
+    def read_so_far(done: int, of: int) -> None:
+        tell("reading", done, of)
+
+    takes = read_folder(source, threads=threads, errors=errors, progress=read_so_far)
+    failed = {_printable(path): str(error) for path, error in takes.failed.items()}
+    if not takes:
+        raise DatasetError(_no_motion(source, takes.failed))
+    return (
+        _printable(Path(source).resolve().name),
+        {_printable(path): take for path, take in takes.items()},
+        failed,
+    )
+
+
+def _no_motion(folder: str | os.PathLike[str], failed: Mapping[str, GmrError]) -> str:
+    if failed:
+        first = next(iter(failed.values()))
+        return (
+            f"none of the {len(failed)} motion files of {os.fspath(folder)} could be read; the first: {first}"
+        )
+    return (
+        f"{os.fspath(folder)} holds no motion files ({some_of(suffixes(), 10)}), nor do the folders in it; "
+        "give the folder that the clips are in"
+    )
+
+
+def _printable(path: str) -> str:
+    """A file's name as text: bytes that are no UTF-8 are written as escapes."""
+    return path.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+
+
+def _profile(trial: Trial) -> Profile:
+    return Profile(
+        tuple(
+            Segment(segment.seconds, segment.speed, float(np.radians(segment.turn_rate_deg)))
+            for segment in trial.segments
+        ),
+        trial.recorded_from,
+    )
+
+
+def _frames(database: Database) -> Frames:
+    return Frames(
+        clip_names=database.clip_names,
+        mirrored=database.mirrored,
+        clip=database.clips,
+        frame=database.frames,
+        seconds=database.seconds,
+        displacement=database.displacements.astype(np.float64),
+        turn=database.turns.astype(np.float64),
+        rate=database.rate,
+    )
+
+
+def _summary(
+    dataset: str,
+    database: Database,
+    motions: Mapping[str, Motion],
+    unit: float | str | None,
+    settings: Mapping[str, Any],
+) -> Summary:
+    copies = int(database.mirrored.sum())
+    guessed = unit is None and any(motions[name].unit is None for name in database.units)
+    units = some_of([unit_text(metres) for metres in sorted(set(database.units.values()))], 5)
+    return Summary(
+        dataset=dataset,
+        clip_count=len(database.clip_names) - copies,
+        mirrored_count=copies,
+        frame_count=len(database),
+        seconds=float(np.maximum(np.bincount(database.clips) - 1, 0).sum() / database.rate),
+        rate=database.rate,
+        joint_count=len(database.skeleton.names),
+        joints=database.joints.described(database.skeleton),
+        unit=units + (", guessed from the length of the legs" if guessed else ""),
+        settings=settings,
+    )
+
+
+@contextmanager
+def _format_warnings() -> Iterator[list[str]]:
+    """Collect what readers find odd in files as sentences; other warnings go their usual way."""
+    sentences: list[str] = []
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", FormatWarning)
+        yield sentences
+    for warning in caught:
+        if issubclass(warning.category, FormatWarning):
+            sentences.append(str(warning.message))
+        else:
+            warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+
+
+def _silent(phase: str, done: int, of: int) -> None:
+    """Tell nobody."""
