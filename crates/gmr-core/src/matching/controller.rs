@@ -25,6 +25,7 @@ use super::index::brute_force::cost;
 use super::index::{Hit, IndexError, Query};
 use super::path::ReferencePath;
 use super::request::{Target, Tracking};
+use super::start::Starts;
 
 /// How the controller searches.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,10 +99,14 @@ pub struct Controller<'a> {
 }
 
 impl<'a> Controller<'a> {
-    /// A character at the start of `path`, on the row whose trajectory is nearest to what is asked there; its pose is
-    /// whatever that row has. `None` when no candidate carries the tags.
+    /// A character at the start of `path`, on its starting row; `None` when no candidate carries the tags.
     #[must_use]
-    pub fn new(database: &'a Database, settings: &'a Settings, path: &'a ReferencePath) -> Option<Self> {
+    pub fn new(
+        database: &'a Database,
+        settings: &'a Settings,
+        path: &'a ReferencePath,
+        starts: &Starts,
+    ) -> Option<Self> {
         let mut controller = Self {
             database,
             settings,
@@ -114,7 +119,7 @@ impl<'a> Controller<'a> {
             steps_to_search: 0,
         };
         controller.ask();
-        controller.continuing = controller.nearest_by_trajectory()?;
+        controller.continuing = starts.row(&controller.query)?;
         Some(controller)
     }
 
@@ -233,26 +238,6 @@ impl<'a> Controller<'a> {
             self.query[sample.dim] = normalization.feature(sample.dim, x as f32);
             self.query[sample.dim + 1] = normalization.feature(sample.dim + 1, y as f32);
         }
-    }
-
-    /// The candidate of the lowest trajectory cost, the first of equals.
-    fn nearest_by_trajectory(&self) -> Option<u32> {
-        let dims: Vec<usize> = (0..self.query.len()).filter(|&dim| self.is_trajectory[dim]).collect();
-        let (mut nearest, mut lowest) = (None, f32::INFINITY);
-        for row in 0..self.database.row_count() as u32 {
-            let tagged = self.database.tags()[row as usize] & self.settings.tags == self.settings.tags;
-            if !(self.database.candidates()[row as usize] && tagged) {
-                continue;
-            }
-            let features = self.database.feature_row(row);
-            let mut terms = dims.iter().map(|&dim| (self.query[dim] - features[dim]).powi(2));
-            // Terms are never negative: a sum that has reached the lowest stays there.
-            let cost = terms.try_fold(0.0, |sum, term| (sum < lowest).then_some(sum + term));
-            if let Some(cost) = cost.filter(|&cost| cost < lowest) {
-                (nearest, lowest) = (Some(row), cost);
-            }
-        }
-        nearest
     }
 
     /// What `row` costs over the pose and over the trajectory dimensions, each summed in their order.

@@ -67,16 +67,20 @@ fn left_of(forward: DVec2) -> DVec2 {
 /// another path. Reduction by multiples of pi/2 held in three parts (Cody and Waite), then the power series.
 #[must_use]
 pub fn sin_cos(angle: f64) -> (f64, f64) {
-    let quarter = (angle * FRAC_2_PI).round_ties_even();
+    let shifted = angle * FRAC_2_PI + ROUNDER;
+    let quarter = shifted - ROUNDER;
     let r = ((angle - quarter * HALF_PI_HIGH) - quarter * HALF_PI_MIDDLE) - quarter * HALF_PI_LOW;
     let (sin, cos) = (r + r * series(&SINE, r * r), 1.0 + series(&COSINE, r * r));
-    match quarter.rem_euclid(4.0) as u8 {
+    match shifted.to_bits() & 3 {
         0 => (sin, cos),
         1 => (cos, -sin),
         2 => (-sin, -cos),
         _ => (-cos, sin),
     }
 }
+
+/// Added to a number below 2^51, it leaves no bits for a fraction: the sum is rounded, its last bits are the integer's.
+const ROUNDER: f64 = 1.5 * (1_u64 << 52) as f64;
 
 /// The leading 26 bits of pi/2, so that a multiple of it is exact.
 const HALF_PI_HIGH: f64 = f64::from_bits(FRAC_PI_2.to_bits() & !0x7ff_ffff);

@@ -12,4 +12,5 @@ pub mod path;
 pub mod playback;
 pub mod request;
 pub mod root;
+pub mod start;
 pub mod trial;

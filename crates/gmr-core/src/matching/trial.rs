@@ -8,6 +8,7 @@ use super::database::Database;
 use super::ground::Placement;
 use super::index::IndexError;
 use super::path::{PathError, ReferencePath, Segment};
+use super::start::Starts;
 use crate::parallel::for_each_chunk;
 
 /// What is asked of the character in one trial, from the origin with heading 0.
@@ -85,9 +86,10 @@ impl Progress {
 pub fn run_trials(trials: &Trials, progress: &Progress) -> Result<Vec<TrialLog>, TrialError> {
     trials.check()?;
     let paths = trials.paths()?;
+    let starts = Starts::new(trials.database, trials.settings.tags);
     let mut logs: Vec<Result<TrialLog, TrialError>> = vec![Err(TrialError::Cancelled); paths.len()];
     for_each_chunk(&mut logs, 1, trials.threads, |number, log| {
-        log[0] = trials.run(number, &paths[number], progress);
+        log[0] = trials.run(number, &paths[number], &starts, progress);
         progress.done.fetch_add(1, Ordering::Relaxed);
     });
     logs.into_iter().collect()
@@ -116,9 +118,15 @@ impl Trials<'_> {
         self.profiles.iter().enumerate().map(path).collect()
     }
 
-    fn run(&self, trial: usize, path: &ReferencePath, progress: &Progress) -> Result<TrialLog, TrialError> {
+    fn run(
+        &self,
+        trial: usize,
+        path: &ReferencePath,
+        starts: &Starts,
+        progress: &Progress,
+    ) -> Result<TrialLog, TrialError> {
         let steps_in = |seconds: f64| (seconds * self.database.rate()).round() as usize;
-        let mut controller = Controller::new(self.database, self.settings, path)
+        let mut controller = Controller::new(self.database, self.settings, path, starts)
             .ok_or(TrialError::NoCandidates { tags: self.settings.tags })?;
         let last = steps_in(path.duration());
         let mut steps = Vec::with_capacity(last + 1);

@@ -1,0 +1,62 @@
+//! The row that a trial starts on: of all candidates the one whose trajectory is nearest to what is asked for there.
+//!
+//! Its pose is whatever that row has, for there is none before it to continue. Trials of a grid begin alike, so a row
+//! that was found is kept.
+
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+
+use super::database::Database;
+
+/// Starting rows in a database.
+#[derive(Debug)]
+pub struct Starts<'a> {
+    database: &'a Database,
+    tags: u32,
+    dims: Vec<usize>,
+    /// By the bits of what was asked for.
+    known: Mutex<HashMap<Vec<u32>, Option<u32>>>,
+}
+
+impl<'a> Starts<'a> {
+    /// Among the candidates that carry all of these tag bits.
+    #[must_use]
+    pub fn new(database: &'a Database, tags: u32) -> Self {
+        let is_trajectory = database.schema().is_trajectory();
+        let dims = (0..is_trajectory.len()).filter(|&dim| is_trajectory[dim]).collect();
+        Self { database, tags, dims, known: Mutex::default() }
+    }
+
+    /// The candidate of the lowest trajectory cost, the first of equals; `None` where there is no candidate.
+    #[must_use]
+    pub fn row(&self, query: &[f32]) -> Option<u32> {
+        let wanted: Vec<f32> = self.dims.iter().map(|&dim| query[dim]).collect();
+        let key: Vec<u32> = wanted.iter().map(|value| value.to_bits()).collect();
+        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = known().get(&key).copied();
+        found.unwrap_or_else(|| {
+            let row = self.nearest(&wanted);
+            known().insert(key, row);
+            row
+        })
+    }
+
+    fn nearest(&self, wanted: &[f32]) -> Option<u32> {
+        let (mut nearest, mut lowest) = (None, f32::INFINITY);
+        for row in (0..self.database.row_count() as u32).filter(|&row| self.admits(row)) {
+            let features = self.database.feature_row(row);
+            let mut terms = wanted.iter().zip(&self.dims).map(|(q, &dim)| (q - features[dim]).powi(2));
+            // Terms are never negative: a sum that has reached the lowest stays there.
+            let cost = terms.try_fold(0.0, |sum, term| (sum < lowest).then_some(sum + term));
+            if let Some(cost) = cost.filter(|&cost| cost < lowest || nearest.is_none()) {
+                (nearest, lowest) = (Some(row), cost);
+            }
+        }
+        nearest
+    }
+
+    fn admits(&self, row: u32) -> bool {
+        let row = row as usize;
+        self.database.candidates()[row] && self.database.tags()[row] & self.tags == self.tags
+    }
+}
