@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from gmr import GmrError, Motion, SkeletonError
+from gmr import GmrError, Motion, Skeleton, SkeletonError
 from gmr.concatenate import concatenate
 from gmr.dummies import find_dummies
 from gmr.sides import pair_joints
@@ -115,6 +115,34 @@ def test_a_post_rotation_file_gets_only_the_dummies_that_it_needs(motion: Motion
         own = ready.layout.owned_slots[joint]  # type: ignore[union-attr]
         assert len(ready.skeleton.children[ready.skeleton.parents[joint]]) > 1
         assert np.abs(ready.rotations[:, own, :3]).max() > 0
+
+
+@given(motions())
+def test_slots_in_another_order_are_renumbered_for_a_file(motion: Motion) -> None:
+    backwards = motion.skeleton.slot_count - 1
+    shuffled = replace(
+        motion,
+        skeleton=replace(
+            motion.skeleton, slots=np.where(motion.skeleton.slots >= 0, backwards - motion.skeleton.slots, -1)
+        ),
+        source=replace(motion.pose, rotations=motion.rotations[:, ::-1], layout=None),
+    )
+    ready = shuffled.to_post_rotation()
+    again = Motion.from_rows(ready.skeleton, ready.layout, ready.rows, ready.frame_time)  # type: ignore[arg-type]
+    close(places(again), places(motion))
+
+
+def test_siblings_that_turn_on_their_own_cannot_be_rows() -> None:
+    skeleton = Skeleton(
+        ("Hips", "Left", "Right"), np.array([-1, 0, 0], np.int32), np.ones((3, 3)),
+        np.array([-1, 0, 1], np.int32), 2, np.full(3, -1, np.int32), np.zeros(3, np.uint8),
+    )  # fmt: skip
+    still = np.tile([0.0, 0.0, 0.0, 1.0], (1, 2, 1))
+    motion = Motion.from_pose(skeleton, still, np.zeros((1, 1, 3)), 0.1)
+    with pytest.raises(SkeletonError, match="turn independently"):
+        motion.to_post_rotation()
+    with pytest.raises(SkeletonError, match="independently of their siblings"):
+        motion.rows  # noqa: B018
 
 
 @given(either, st.sampled_from(["m", "mm", "in"]))

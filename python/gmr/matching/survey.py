@@ -15,7 +15,7 @@ from gmr.matching.prepare import guessed_unit, in_metres_upright, unit_text
 from gmr.matching.root import RootJoint, find_root_joint
 from gmr.motion import Motion
 from gmr.skeleton import Skeleton
-from gmr.tpose import has_leading_tpose
+from gmr.tpose import leading_rest_frames
 from gmr.units import metres_per_unit
 
 __all__ = ["Survey", "listed", "survey"]
@@ -158,7 +158,8 @@ def _without_tposes(
     motions: dict[str, Motion],
 ) -> tuple[dict[str, Motion], dict[str, int], list[str]]:
     """The clips from where the recording begins, how many frames that skips, and a note that says so."""
-    skipped = {name: 1 for name, motion in motions.items() if has_leading_tpose(motion)}
+    skipped = {name: leading_rest_frames(motion) for name, motion in motions.items()}
+    skipped = {name: frames for name, frames in skipped.items() if frames}
     if not skipped:
         return motions, {}, []
     note = (
