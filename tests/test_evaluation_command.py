@@ -10,14 +10,16 @@ import sys
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
 
-from gmr.cli.evaluate import evaluate
+from gmr.cli import gmr as command
+from gmr.cli.common import finished
 from locomotion import Arc
 from walker import write_walkers
 
 SMALL = ("--speeds", "1,2", "--turn-rates", "-50:50:50", "--no-report")
-PROGRAM = (sys.executable, "-c", "from gmr.cli.evaluate import evaluate; evaluate()")
+PROGRAM = (sys.executable, "-m", "gmr", "evaluate")
+
+Captured = pytest.CaptureFixture[str]
 
 
 @pytest.fixture
@@ -26,29 +28,29 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path / "takes"
 
 
-def run(*arguments: object) -> Result:
-    return CliRunner().invoke(evaluate, [str(argument) for argument in arguments])
+def run(*arguments: object) -> int:
+    """The exit code of ``gmr evaluate ARGUMENTS``, in this process."""
+    return finished(command, ["evaluate", *map(str, arguments)])
 
 
-def test_the_verdict_goes_to_stdout_and_progress_to_stderr(folder: Path) -> None:
-    result = run(folder, *SMALL)
-    assert result.exit_code == 0
-    assert result.stdout.startswith("This dataset holds ")
+def test_the_verdict_goes_to_stdout_and_progress_to_stderr(folder: Path, capsys: Captured) -> None:
+    assert run(folder, *SMALL) == 0
+    said = capsys.readouterr()
+    assert said.out.startswith("This dataset holds ")
     for phase in ("reading: 2,", "preparing,", "simulating: 6,", "measuring,"):
-        assert phase in result.stderr
-    assert "reading" not in result.stdout
-    assert all(len(line) <= 100 for line in result.stdout.splitlines())
+        assert phase in said.err
+    assert "reading" not in said.out
+    assert all(len(line) <= 100 for line in said.out.splitlines())
 
 
-def test_quiet_says_nothing_of_progress(folder: Path) -> None:
-    result = run(folder, *SMALL, "--quiet")
-    assert result.stderr == ""
-    assert result.exit_code == 0
+def test_quiet_says_nothing_of_progress(folder: Path, capsys: Captured) -> None:
+    assert run(folder, *SMALL, "--quiet") == 0
+    assert capsys.readouterr().err == ""
 
 
-def test_json_is_one_object_with_the_figures(folder: Path) -> None:
-    result = run(folder, *SMALL, "--json", "--mirror", "--preset", "mig2022")
-    found = json.loads(result.stdout)
+def test_json_is_one_object_with_the_figures(folder: Path, capsys: Captured) -> None:
+    assert run(folder, *SMALL, "--json", "--mirror", "--preset", "mig2022") == 0
+    found = json.loads(capsys.readouterr().out)
     assert found["dataset"] == "takes"
     assert (found["clips"], found["mirrored_clips"]) == (2, 2)
     assert found["settings"]["preset"] == "mig2022"
@@ -58,21 +60,27 @@ def test_json_is_one_object_with_the_figures(folder: Path) -> None:
     assert found["failed"] == {}
 
 
-def test_tables_are_written_where_asked(folder: Path, tmp_path: Path) -> None:
-    result = run(folder, *SMALL, "--tables", tmp_path / "new" / "tables")
-    assert result.exit_code == 0
-    names = {path.name for path in (tmp_path / "new" / "tables").iterdir()}
-    assert {"trials.csv", "coverage.csv", "usage.csv", "transitions.csv", "clips.csv"} <= names
-    assert f"Tables: {tmp_path / 'new' / 'tables'}" in result.stdout
+def test_the_report_and_the_tables_are_written_where_asked(
+    folder: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    report, tables = tmp_path / "new" / "report.html", tmp_path / "new" / "tables"
+    assert run(folder, "--speeds", 1, "--turn-rates", 0, "-o", report, "--tables", tables) == 0
+    said = capsys.readouterr().out
+    assert f"Report: {report}" in said
+    assert f"Tables: {tables}" in said
+    assert "</html>" in report.read_text()
+    names = {path.name for path in tables.iterdir()}
+    assert {"trials.csv", "coverage.csv", "usage.csv", "transitions.csv", "clips.csv"} < names
+    assert sorted(path.name for path in report.parent.iterdir()) == ["report.html", "tables"]
 
 
-def test_a_broken_file_is_named_and_the_exit_code_is_1(folder: Path) -> None:
+def test_a_broken_file_is_named_and_the_exit_code_is_1(folder: Path, capsys: Captured) -> None:
     (folder / "broken.bvh").write_text("HIERARCHY\nROOT Hips\n{\n")
-    result = run(folder, *SMALL)
-    assert result.exit_code == 1
-    assert "left out: " in result.stderr
-    assert "broken.bvh:4" in result.stderr
-    assert "1 file could not be used and was left out: broken.bvh." in " ".join(result.stdout.split())
+    assert run(folder, *SMALL, "--quiet") == 1
+    said = capsys.readouterr()
+    assert said.err.count("\n") == 1
+    assert "broken.bvh:4" in said.err
+    assert "1 file could not be used and was left out: broken.bvh." in " ".join(said.out.split())
 
 
 @pytest.mark.parametrize(
@@ -90,44 +98,46 @@ def test_a_broken_file_is_named_and_the_exit_code_is_1(folder: Path) -> None:
     ],
 )
 def test_wrong_usage_is_explained_with_exit_code_2(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], says: str
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: Captured,
+    arguments: tuple[str, ...],
+    says: str,
 ) -> None:
     (tmp_path / "takes").mkdir()
     monkeypatch.chdir(tmp_path)
-    result = run(*arguments)
-    assert result.exit_code == 2
-    assert says in result.stderr
+    assert run(*arguments) == 2
+    assert says in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == [tmp_path / "takes"]
 
 
 @pytest.mark.parametrize(
     ("clips", "says"),
-    [({}, "holds no motion files"), ({"short.bvh": Arc(0.5, 1.0)}, "no clip lasts the 1.02 s")],
+    [({}, "holds no motion files"), ({"short.bvh": Arc(0.5, 1.0)}, "no clip lasts the 1.0")],
 )
 def test_a_dataset_that_cannot_be_evaluated_is_one_sentence(
-    tmp_path: Path, clips: dict[str, Arc], says: str
+    tmp_path: Path, capsys: Captured, clips: dict[str, Arc], says: str
 ) -> None:
     (tmp_path / "takes").mkdir()
     write_walkers(tmp_path / "takes", clips)
-    result = run(tmp_path / "takes", "--quiet", "-o", tmp_path / "report.html")
-    assert result.exit_code == 1
-    assert result.stderr.startswith("Error: ")
-    assert says in result.stderr
-    assert len(result.stderr.splitlines()) == 1
+    assert run(tmp_path / "takes", "--quiet", "-o", tmp_path / "report.html") == 1
+    said = capsys.readouterr()
+    assert says in said.err
+    assert said.err.count("\n") == 1
+    assert said.out == ""
     assert not (tmp_path / "report.html").exists()
 
 
-def test_joints_can_be_named(folder: Path) -> None:
-    wrong = run(folder, *SMALL, "--name", "left_foot=Paw")
-    assert wrong.exit_code == 1
-    assert "Paw" in wrong.stderr
-    right = run(folder, *SMALL, "--name", "left_foot=LeftFoot", "--json")
-    assert json.loads(right.stdout)["joints"]["left_foot"] == "LeftFoot"
+def test_joints_can_be_named(folder: Path, capsys: Captured) -> None:
+    assert run(folder, *SMALL, "--name", "left_foot=Paw") == 1
+    assert "Paw" in capsys.readouterr().err
+    assert run(folder, *SMALL, "--name", "left_foot=LeftFoot", "--json") == 0
+    assert json.loads(capsys.readouterr().out)["joints"]["left_foot"] == "LeftFoot"
 
 
-def test_ranges_have_both_ends(folder: Path) -> None:
-    result = run(folder, "--speeds", "0.5:1.1:0.2", "--turn-rates=-30,30", "--no-report", "--json")
-    settings = json.loads(result.stdout)["settings"]
+def test_ranges_have_both_ends(folder: Path, capsys: Captured) -> None:
+    assert run(folder, "--speeds", "0.5:1.1:0.2", "--turn-rates=-30,30", "--no-report", "--json") == 0
+    settings = json.loads(capsys.readouterr().out)["settings"]
     assert settings["speeds"] == [0.5, 0.7, 0.9, 1.1]
     assert settings["turn_rates_deg"] == [-30.0, 30.0]
 
@@ -145,7 +155,7 @@ def test_ctrl_c_is_one_sentence_and_leaves_nothing(folder: Path, tmp_path: Path)
         running.send_signal(signal.SIGINT)
         rest = running.stderr.read()
     assert running.returncode == 130
-    assert rest.strip().splitlines()[-1].startswith("Interrupted while ")
+    assert rest.strip().endswith("no file was left half-written")
     assert "Traceback" not in rest
     assert not out.exists()
 
@@ -163,6 +173,6 @@ def test_a_disk_that_fills_up_is_one_sentence_and_leaves_nothing(folder: Path, t
         check=False,
     )
     assert done.returncode == 1
-    assert done.stderr.startswith("Error while writing tables: ")
-    assert len(done.stderr.splitlines()) == 1
+    assert "(while writing tables); no file was left half-written" in done.stderr
+    assert done.stderr.count("\n") == 1
     assert not (tmp_path / "tables").exists()

@@ -15,7 +15,7 @@ from gmr.cli.common import finished
 
 __all__ = ["gmr", "main"]
 
-COMMANDS: Final = ("info", "convert")
+COMMANDS: Final = ("info", "convert", "evaluate")
 
 
 class Commands(click.Group):
@@ -45,6 +45,7 @@ def gmr() -> None:
     \b
     gmr info walk.bvh             what is in a file, and what is odd about it
     gmr convert takes/ out/ --fps 60 --mirror
+    gmr evaluate takes/           what a set of locomotion clips can do, as a report
     gmr COMMAND --help            more examples
     """
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 import json
 import math
 import shutil
-import sys
 import textwrap
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NoReturn, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import click
 
+from gmr.cli.common import say
 from gmr.cli.progress import Phases
 from gmr.errors import GmrError
 
@@ -70,7 +70,7 @@ def _roles(context: click.Context, option: click.Parameter, pairs: tuple[str, ..
     return roles
 
 
-@click.command(epilog=EXAMPLES)
+@click.command(short_help="What a folder of locomotion clips can do, as a report.", epilog=EXAMPLES)
 @click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
 @click.option(
     "-o",
@@ -116,9 +116,7 @@ def _roles(context: click.Context, option: click.Parameter, pairs: tuple[str, ..
 @click.option("--threads", type=click.IntRange(min=1), help="How many to use.  [default: all cores]")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the verdict.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
-@click.pass_context
 def evaluate(
-    context: click.Context,
     folder: Path,
     out: Path,
     no_report: bool,
@@ -133,7 +131,7 @@ def evaluate(
     threads: int | None,
     as_json: bool,
     quiet: bool,
-) -> None:
+) -> int:
     """Measure what a folder of locomotion clips can do, and write a report.
 
     A character made of the clips in FOLDER (and the folders in it) is sent along circles and straight
@@ -149,26 +147,24 @@ def evaluate(
     except ValueError as error:
         raise click.UsageError(f"{error}.") from error
     phases = Phases(quiet)
-    with _in_one_sentence(phases):
-        with phases:
-            found = gmr.evaluate(
-                folder,
-                preset=preset,
-                mirror=mirror,
-                tracking=cast("Tracking", tracking),
-                speeds=speeds,
-                turn_rates_deg=turn_rates,
-                threads=threads,
-                names=names,
-                unit=_number_or_name(unit),
-                progress=phases.tell,
-            )
-            written = _write(found, None if no_report else out, tables, phases)
-        click.echo(_summary(found, written) if as_json else _verdict(found, written))
+    with phases, _trouble_with_files(phases):
+        found = gmr.evaluate(
+            folder,
+            preset=preset,
+            mirror=mirror,
+            tracking=cast("Tracking", tracking),
+            speeds=speeds,
+            turn_rates_deg=turn_rates,
+            threads=threads,
+            names=names,
+            unit=_number_or_name(unit),
+            progress=phases.tell,
+        )
+        written = _write(found, None if no_report else out, tables, phases)
+    click.echo(_summary(found, written) if as_json else _verdict(found, written))
     for file, why in found.failed.items():
-        click.echo(f"left out: {why if why.startswith(file) else f'{file}: {why}'}", err=True)
-    if found.failed:
-        context.exit(1)
+        say(f"left out {why if file in why else f'{file}: {why}'}")
+    return 1 if found.failed else 0
 
 
 def _write(found: Evaluation, out: Path | None, tables: Path | None, phases: Phases) -> dict[str, Any]:
@@ -248,22 +244,12 @@ def _number_or_name(unit: str | None) -> float | str | None:
 
 
 @contextmanager
-def _in_one_sentence(phases: Phases) -> Iterator[None]:
-    """What goes wrong is said in one sentence on stderr, and no half of a file is left."""
+def _trouble_with_files(phases: Phases) -> Iterator[None]:
+    """A file that cannot be written, on a full disk or elsewhere, is one sentence."""
     try:
         yield
-    except KeyboardInterrupt:
-        _give_up(f"Interrupted while {phases.current}; nothing is left half-written.", 130)
-    except GmrError as error:
-        _give_up(f"Error: {error}", 1)
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        _give_up(
-            f"Error while {phases.current}: {place}{error.strerror or error}; nothing is left half-written.",
-            1,
-        )
-
-
-def _give_up(sentence: str, code: int) -> NoReturn:
-    click.echo(sentence, err=True)
-    sys.exit(code)
+        raise GmrError(
+            f"{place}{error.strerror or error} (while {phases.current}); no file was left half-written"
+        ) from error
