@@ -36,7 +36,7 @@ def run(*arguments: object) -> int:
 def test_the_verdict_goes_to_stdout_and_progress_to_stderr(folder: Path, capsys: Captured) -> None:
     assert run(folder, *SMALL) == 0
     said = capsys.readouterr()
-    assert said.out.startswith("This dataset holds ")
+    assert said.out.startswith("This dataset does what it is asked in ")
     for phase in ("reading: 2,", "preparing,", "simulating: 6,", "measuring,"):
         assert phase in said.err
     assert "reading" not in said.out
@@ -56,7 +56,7 @@ def test_json_is_one_object_with_the_figures(folder: Path, capsys: Captured) -> 
     assert found["settings"]["preset"] == "mig2022"
     assert found["settings"]["speeds"] == [1.0, 2.0]
     assert [row["turn_rate_deg"] for row in found["trials"]] == [-50.0, 0.0, 50.0] * 2
-    assert found["verdict"]["headline"].startswith("This dataset holds ")
+    assert found["verdict"]["headline"].startswith("This dataset does what it is asked in ")
     assert found["failed"] == {}
 
 

@@ -45,7 +45,7 @@ def judged(
 def test_a_perfect_dataset_is_told_so() -> None:
     said = judged(EVERYTHING)
     assert said.headline == (
-        "This dataset holds every one of 25 trials: "
+        "This dataset does what it is asked in all 25 trials: "
         "going straight and turning up to 100 degrees/s either way at 1 to 3 m/s."
     )
     assert "Straight ahead it keeps 1 to 3 m/s throughout." in said.sentences
@@ -56,9 +56,9 @@ def test_a_perfect_dataset_is_told_so() -> None:
 def test_a_dataset_of_straight_clips_is_told_so() -> None:
     straight = {name: arc for name, arc in EVERYTHING.items() if not arc.turn_rate_deg}
     said = judged(straight, lambda speed, turn: Gait(speed, 0.0))
-    assert (
-        said.headline
-        == "This dataset holds 5 of 25 trials (20%); it is good for going straight at 1 to 3 m/s."
+    assert said.headline == (
+        "This dataset does what it is asked in 5 of 25 trials (20%); "
+        "it is good for going straight at 1 to 3 m/s."
     )
     assert (
         "The clips only go straight: 0 seconds of their 20 seconds turn by more than 12.5 degrees/s."
@@ -139,7 +139,10 @@ def test_failing_where_there_are_clips_does_not_ask_for_more_of_them() -> None:
 
 def test_a_dataset_that_holds_nothing_is_told_so() -> None:
     said = judged({"still.bvh": Arc(20.0, 0.0)}, lambda speed, turn: Gait(0.0, 0.0))
-    assert said.headline == "This dataset holds none of 25 trials: it cannot follow any path of this grid."
+    assert (
+        said.headline
+        == "This dataset does what it is asked in none of 25 trials: it cannot follow any path of this grid."
+    )
     assert "Straight ahead it keeps no speed of the grid." in said.sentences
     assert "All of the time is played from the one clip, still.bvh." in said.sentences
 
@@ -149,10 +152,10 @@ def test_straying_from_the_path_fails_only_where_the_path_is_tracked() -> None:
         return Gait(0.9 * speed, turn)
 
     timed = judged(EVERYTHING, slow)
-    assert "keeps its speed" not in timed.headline
+    assert "all 25" not in timed.headline
     assert any("(mean distance from the path" in sentence for sentence in timed.sentences)
     free = judged(EVERYTHING, slow, tracking="velocity")
-    assert free.headline.startswith("This dataset holds every one of 25 trials")
+    assert free.headline.startswith("This dataset does what it is asked in all 25 trials")
     assert not any("of where the planned path has it" in sentence for sentence in free.sentences)
 
 

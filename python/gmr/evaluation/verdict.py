@@ -24,6 +24,8 @@ __all__ = ["verdict"]
 STRAIGHT_WITHIN_DEG: Final = 12.5
 """Turns slower than this, degrees per second, count as going straight: half a step of the paper's grid."""
 
+DOES: Final = "This dataset does what it is asked in"
+
 LOPSIDED: Final = 0.5
 """One side is called short when it has less than this share of the other side's seconds."""
 
@@ -68,12 +70,12 @@ def _headline(grid: Grid) -> str:
     held, trials = int(grid.held.sum()), grid.held.size
     best = held_rectangle(grid)
     if best is None:
-        return f"This dataset holds none of {count(trials, 'trial')}: it cannot follow any path of this grid."
+        return f"{DOES} none of {count(trials, 'trial')}: it cannot follow any path of this grid."
     where = f"{turning(*best.turn_rates_deg)} at {span(*best.speeds, 'm/s')}"
     if held == trials:
-        return f"This dataset holds every one of {count(trials, 'trial')}: {where}."
+        return f"{DOES} {'the one trial' if trials == 1 else f'all {trials} trials'}: {where}."
     share = percent(held / trials)
-    return f"This dataset holds {held} of {count(trials, 'trial')} ({share}); it is good for {where}."
+    return f"{DOES} {held} of {count(trials, 'trial')} ({share}); it is good for {where}."
 
 
 def _what_holds(grid: Grid, timed: bool) -> str:
@@ -84,7 +86,7 @@ def _what_holds(grid: Grid, timed: bool) -> str:
     ]
     if timed:
         within.insert(0, f"within {limits.offset:g} m of where the planned path has it at that time")
-    return f"A trial holds when the character is, on the average, {listing(within)}."
+    return f"What is asked counts as done when the character is, on average, {listing(within)}."
 
 
 def _straight_sentences(grid: Grid) -> Iterator[str]:
