@@ -277,7 +277,9 @@ function player(root) {
 
   function advance(now) {
     if (!playing) return;
-    time = Math.min(time + ((now - before) / 1000) * Number(find("pace").value), duration);
+    /* The first frame's time can lie before the click that it follows. */
+    const passed = Math.max(now - before, 0) / 1000;
+    time = Math.min(time + passed * Number(find("pace").value), duration);
     before = now;
     draw();
     if (time >= duration) setPlaying(false);
