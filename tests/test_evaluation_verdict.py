@@ -169,7 +169,7 @@ def test_clips_that_carry_and_clips_never_played_are_named_with_their_mirrored_c
         "spare.bvh (mirrored)": Arc(90.0, 1.0, mirrored=True),
     }
     said = judged(clips)
-    assert "Half of the time and more is played from 1 of 3 clips: long.bvh (83%)." in said.sentences
+    assert "A single clip of 3, long.bvh, is played for 83% of the time." in said.sentences
     never = "1 clip of 3 is never played (90 seconds, 72% of the material): spare.bvh."
     assert never in said.sentences
 
@@ -212,7 +212,7 @@ def test_clips_are_named_without_the_folder_that_all_are_in() -> None:
         "set/run/a.bvh": Arc(4.0, 1.0),
     }
     sentences = judged(clips).sentences
-    assert "Half of the time and more is played from 1 of 3 clips: walk/a.bvh (100%)." in sentences
+    assert "A single clip of 3, walk/a.bvh, is played for 100% of the time." in sentences
     assert (
         "2 clips of 3 are never played (9 seconds, 18% of the material): walk/b.bvh and run/a.bvh."
         in sentences

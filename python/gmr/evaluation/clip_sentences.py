@@ -71,9 +71,11 @@ def _carrying(clips: _Clips) -> str:
     ]
     if len(clips.names) == 1:
         return f"All of the time is played from the one clip, {clips.names[0]}."
-    most = "is played from" if carrying > 1 else "and more is played from"
+    if carrying == 1:
+        share = percent(float(clips.share[0]))
+        return f"A single clip of {len(clips.names)}, {clips.names[0]}, is played for {share} of the time."
     named = f", led by {listing(led_by)}" if carrying > MOST_NAMES else f": {listing(led_by[:carrying])}"
-    return f"Half of the time {most} {carrying} of {count(len(clips.names), 'clip')}{named}."
+    return f"Half of the time is played from {carrying} of {len(clips.names)} clips{named}."
 
 
 def _never_played(clips: _Clips) -> str:
