@@ -88,8 +88,15 @@ class Assembly:
         self.starts.append(take.start)
 
 
-def assemble(seen: Survey, schema: Schema, rate: float, mirror: bool, tags: Tags | None) -> Assembly:
-    """All clips of a survey in a builder that is ready to finish.
+def assemble(
+    seen: Survey,
+    schema: Schema,
+    rate: float,
+    mirror: bool,
+    pairs: Mapping[str, str] | None,
+    tags: Tags | None,
+) -> Assembly:
+    """All clips of a survey in a builder that is ready to finish; see :meth:`gmr.matching.Database.build`.
 
     A clip that fails is left out by name; the others are not touched by it.
 
@@ -97,7 +104,7 @@ def assemble(seen: Survey, schema: Schema, rate: float, mirror: bool, tags: Tags
         DatasetError: no clip is left, tags fit no clip, or the schema asks for a joint that is not there.
     """
     _check_tags(seen, tags or {})
-    image = _mirror(seen) if mirror else None
+    image = _mirror(seen, pairs) if mirror else None
     translated = np.unique(np.concatenate([motion.translated for motion in seen.motions.values()]))
     if image is not None:
         translated = np.union1d(translated, image.pair[translated])
@@ -121,7 +128,7 @@ def assemble(seen: Survey, schema: Schema, rate: float, mirror: bool, tags: Tags
     return assembly
 
 
-def _mirror(seen: Survey) -> Mirror:
+def _mirror(seen: Survey, pairs: Mapping[str, str] | None) -> Mirror:
     """How the dataset's clips are mirrored.
 
     Raises:
@@ -130,7 +137,7 @@ def _mirror(seen: Survey) -> Mirror:
     names = list(seen.samples)[:: max(1, len(seen.samples) // _MIRROR_SAMPLES)]
     clips = [in_metres_upright(seen.samples[name], seen.units[name], seen.up) for name in names]
     try:
-        return find_mirror(seen.skeleton, clips, seen.joints.across[0])
+        return find_mirror(seen.skeleton, clips, seen.joints.across[0], pairs)
     except SkeletonError as error:
         raise DatasetError(
             f"the clips cannot be mirrored: {error} Or build without mirrored copies."

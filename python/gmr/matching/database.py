@@ -70,6 +70,7 @@ class Database:
         motions: Iterable[Motion] | Mapping[str, Motion],
         *,
         mirror: bool = False,
+        pairs: Mapping[str, str] | None = None,
         schema: Schema = LOCOMOTION,
         rate: float = 60.0,
         names: Mapping[str, str | int] | None = None,
@@ -82,6 +83,7 @@ class Database:
         Args:
             motions: the clips, by name or with names of their own.
             mirror: add the mirror image of each clip.
+            pairs: joints of the two sides whose names do not tell that they belong together, for ``mirror``.
             schema: the features.
             rate: frames a second of the database.
             names: joints by role where they are not found by themselves, such as ``{"left_foot": "foot_l"}``.
@@ -96,7 +98,7 @@ class Database:
         if not 1 <= rate <= 1000:
             raise DatasetError(f"a database cannot have {rate} frames a second; give 1 to 1000")
         seen = survey(named(motions), schema.span, names, unit)
-        assembly = assemble(seen, schema, rate, mirror, tags)
+        assembly = assemble(seen, schema, rate, mirror, pairs, tags)
         fitted = (normalization.offset, normalization.scale) if normalization else (None, None)
         try:
             core = assembly.builder.finish(*fitted)

@@ -8,7 +8,7 @@ the frames that its originals use: `C^-1 S R S C`, with one constant `C` a slot,
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations, product
 
@@ -72,18 +72,24 @@ def _each(values: NDArray[np.float64], maps: NDArray[np.float64]) -> NDArray[np.
     return np.ascontiguousarray(np.matmul(values.transpose(1, 0, 2), maps).transpose(1, 0, 2))
 
 
-def find_mirror(skeleton: Skeleton, clips: Sequence[Motion], across: tuple[int, int]) -> Mirror:
+def find_mirror(
+    skeleton: Skeleton,
+    clips: Sequence[Motion],
+    across: tuple[int, int],
+    pairs: Mapping[str, str] | None = None,
+) -> Mirror:
     """How clips of a skeleton are mirrored.
 
     Args:
         skeleton: J joints, S slots.
         clips: some poses of each clip, Y up.
         across: a left and a right joint that tell the facing.
+        pairs: names of joints of the two sides, where their names do not tell.
 
     Raises:
         SkeletonError: a joint of one side has no partner on the other.
     """
-    pair = pair_joints(skeleton)
+    pair = pair_joints(skeleton, pairs)
     slots = _paired_slots(skeleton, pair)
     frames = _frames(skeleton, clips, slots, pair, across)
     turns = _turns(skeleton, frames)

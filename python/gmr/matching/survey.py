@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gmr.errors import DatasetError
+from gmr.frames import Rows
 from gmr.matching.body import Poses, leg_length, turned_upright, up_axis
 from gmr.matching.joints import Joints, find_joints
 from gmr.matching.prepare import guessed_unit, in_metres_upright, unit_text
@@ -126,8 +127,8 @@ def _unusable(motion: Motion) -> str | None:
     if motion.frame_count < 2:
         return "it is a pose, not a movement: a clip has at least 2 frames"
     source = motion.source
-    values = source.values if hasattr(source, "values") else source.rotations
-    if not np.isfinite(values).all():
+    held = (source.values,) if isinstance(source, Rows) else (source.rotations, source.translations)
+    if not all(np.isfinite(values).all() for values in held):
         return "it holds numbers that are not finite"
     return None
 

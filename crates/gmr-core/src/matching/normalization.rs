@@ -6,7 +6,7 @@ use crate::error::ShapeError;
 use crate::matching::features::Schema;
 
 /// Groups whose mean standard deviation lies below this do not vary (metres, metres a second, or unit vectors).
-const CONSTANT: f64 = 1e-6;
+const CONSTANT: f64 = 1e-4;
 
 /// Offset and scale per dimension: `feature = (raw - offset) / scale`. Frozen with the database that it was fitted to.
 #[derive(Debug, Clone, PartialEq)]
