@@ -74,6 +74,27 @@ def test_the_report_and_the_tables_are_written_where_asked(
     assert sorted(path.name for path in report.parent.iterdir()) == ["report.html", "tables"]
 
 
+def test_tables_are_json_where_pyarrow_is_missing(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert run(folder, *SMALL, "--tables", tmp_path / "tables") == 0
+    suffixes = {path.suffix for path in (tmp_path / "tables").iterdir()}
+    assert suffixes == {".csv", ".json"}
+    trials = json.loads((tmp_path / "tables" / "trials.json").read_text())
+    assert [row["speed"] for row in trials] == [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]
+
+
+def test_file_names_that_are_no_utf_8_do_no_harm(folder: Path, tmp_path: Path, capsys: Captured) -> None:
+    (folder / "walk.bvh").rename(folder / "w\udcffalk.bvh")
+    (folder / "b\udcfeoken.bvh").write_text("nonsense")
+    report, tables = tmp_path / "report.html", tmp_path / "tables"
+    assert run(folder, "--speeds", 1, "--turn-rates", 0, "-o", report, "--tables", tables) == 1
+    assert "w\\xffalk.bvh" in (tables / "usage.csv").read_text(encoding="utf-8")
+    assert "oken.bvh" in capsys.readouterr().err
+    assert report.exists()
+
+
 def test_a_broken_file_is_named_and_the_exit_code_is_1(folder: Path, capsys: Captured) -> None:
     (folder / "broken.bvh").write_text("HIERARCHY\nROOT Hips\n{\n")
     assert run(folder, *SMALL, "--quiet") == 1
@@ -144,7 +165,7 @@ def test_ranges_have_both_ends(folder: Path, capsys: Captured) -> None:
 
 def test_ctrl_c_is_one_sentence_and_leaves_nothing(folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    long = ("--speeds", "0.5:4:0.05", "--turn-rates", "-100:100:5", "-o", out / "report.html")
+    long = ("--speeds", "0.5:4:0.1", "--turn-rates", "-100:100:5", "-o", out / "report.html")
     with subprocess.Popen(
         [*PROGRAM, folder, *long, "--tables", out / "tables"], stderr=subprocess.PIPE, text=True
     ) as running:

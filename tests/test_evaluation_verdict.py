@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
 
 from gmr.evaluation.coverage import coverage_table
 from gmr.evaluation.result import Verdict
-from gmr.evaluation.scenario import constant_trials
+from gmr.evaluation.scenario import Trial, constant_trials
 from gmr.evaluation.transitions import transitions_of
 from gmr.evaluation.trials import trials_table
 from gmr.evaluation.usage import clips_table, play_counts, usage_table
@@ -28,13 +28,14 @@ def judged(
     clips: dict[str, Arc],
     answer: Callable[[float, float], Gait] = Gait,
     tracking: str = "time",
+    grid: Sequence[Trial] = GRID,
     **said: object,
 ) -> Verdict:
     frames = frames_of(clips)
-    log = walked(GRID, frames, answer)
+    log = walked(grid, frames, answer)
     counts = play_counts(log, frames)
     return verdict(
-        trials_table("set", GRID, tracking, log, transitions_of(log, frames), frames),
+        trials_table("set", grid, tracking, log, transitions_of(log, frames), frames),
         coverage_table("set", frames),
         clips_table("set", counts, frames),
         usage_table("set", "constant", counts, frames),
@@ -111,6 +112,16 @@ def test_what_only_one_side_lacks_is_named_with_its_side() -> None:
     assert any("turning right, though not left, by 50 to 100 degrees/s" in text for text in said.sentences)
     assert any(text.startswith("Turns that fail to one side only need no capture") for text in said.sentences)
     assert not any(text.startswith("Capture next") for text in said.sentences)
+
+
+def test_nothing_is_said_of_a_side_that_was_not_asked_for() -> None:
+    asked = constant_trials((1.0, 2.0), (0.0, 50.0))
+    said = judged({"a.bvh": Arc(40.0, 1.0)}, lambda speed, turn: Gait(speed, 0.0), grid=asked)
+    assert any("when turning left by 50 degrees/s at 1 to 2 m/s" in text for text in said.sentences)
+    assert any(
+        text.startswith("Capture next: turns to the left at a walk (1 m/s,") for text in said.sentences
+    )
+    assert "right" not in str(said)
 
 
 def test_a_mirrored_dataset_is_not_told_to_be_mirrored() -> None:

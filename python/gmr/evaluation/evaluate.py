@@ -168,7 +168,7 @@ def _motions(
         tell("reading", done, of)
 
     takes = read_folder(source, threads=threads, errors=errors, progress=read_so_far)
-    failed = {_printable(path): str(error) for path, error in takes.failed.items()}
+    failed = {_printable(path): _printable(str(error)) for path, error in takes.failed.items()}
     if not takes:
         raise DatasetError(_no_motion(source, takes.failed))
     return (
@@ -190,9 +190,9 @@ def _no_motion(folder: str | os.PathLike[str], failed: Mapping[str, GmrError]) -
     )
 
 
-def _printable(path: str) -> str:
-    """A file's name as text: bytes that are no UTF-8 are written as escapes."""
-    return path.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+def _printable(text: str) -> str:
+    """Text with a file's name in it: bytes that are no UTF-8 are written as escapes."""
+    return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
 
 
 def _profile(trial: Trial) -> Profile:
@@ -251,7 +251,7 @@ def _format_warnings() -> Iterator[list[str]]:
         yield sentences
     for warning in caught:
         if issubclass(warning.category, FormatWarning):
-            sentences.append(str(warning.message))
+            sentences.append(_printable(str(warning.message)))
         else:
             warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
 

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from gmr.evaluation.regions import EITHER, LEFT, RIGHT, STRAIGHT, Grid, Region
+from gmr.evaluation.regions import EITHER, LEFT, LEFT_ONLY, RIGHT, RIGHT_ONLY, STRAIGHT, Grid, Region
 from gmr.evaluation.words import GAITS, circles, count, duration, gait_of, listing, number, span
 
 __all__ = ["capture_sentences", "failure_sentences"]
@@ -48,10 +48,7 @@ def _movement(grid: Grid, region: Region) -> str:
     if region.side == STRAIGHT:
         return f"going straight {at}"
     by = span(turns.min(), turns.max(), "degrees/s")
-    way = {EITHER: "either way", LEFT: "left, though not right,", RIGHT: "right, though not left,"}[
-        region.side
-    ]
-    return f"turning {way} by {by} {at}"
+    return f"turning {region.side} by {by} {at}"
 
 
 def _clips_there(grid: Grid, region: Region) -> str:
@@ -96,7 +93,7 @@ def capture_sentences(grid: Grid, regions: Sequence[Region], mirrored: bool) -> 
         (region for region in lacking if len(region.cells)), key=lambda region: -len(region.cells)
     )
     told = _worth_telling(grid, lacking)
-    to_mirror = [region for region in told if region.side in (LEFT, RIGHT) and not mirrored]
+    to_mirror = [region for region in told if region.side in (LEFT_ONLY, RIGHT_ONLY) and not mirrored]
     to_capture = [region for region in told if region not in to_mirror]
     if to_capture:
         yield f"Capture next: {'; '.join(_to_capture(grid, region) for region in to_capture)}."
@@ -126,9 +123,12 @@ def _lacking(grid: Grid, region: Region) -> Region:
 def _to_capture(grid: Grid, region: Region) -> str:
     speeds = grid.speeds[region.cells[:, 0]]
     turns = np.radians(np.abs(grid.turn_rates_deg[region.cells[:, 1]]))
-    what = {STRAIGHT: "straight lines", EITHER: "turns to the left and to the right"}.get(
-        region.side, f"turns to the {region.side}"
-    )
+    what = {
+        STRAIGHT: "straight lines",
+        EITHER: "turns to the left and to the right",
+        **dict.fromkeys((LEFT, LEFT_ONLY), "turns to the left"),
+        **dict.fromkeys((RIGHT, RIGHT_ONLY), "turns to the right"),
+    }[region.side]
     ways = []
     for gait in GAITS:
         chosen = np.array([gait_of(speed) == gait for speed in speeds.tolist()])

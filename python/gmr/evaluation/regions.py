@@ -15,22 +15,16 @@ from numpy.typing import NDArray
 from gmr.evaluation.table import Table
 
 __all__ = [
-    "EITHER",
-    "LEFT",
-    "RIGHT",
-    "STRAIGHT",
-    "Grid",
-    "Limits",
-    "Rectangle",
-    "Region",
-    "failures",
-    "held_rectangle",
+    *("EITHER", "LEFT", "LEFT_ONLY", "RIGHT", "RIGHT_ONLY", "STRAIGHT"),
+    *("Grid", "Limits", "Rectangle", "Region", "failures", "held_rectangle"),
 ]
 
 STRAIGHT: Final = "straight"
 EITHER: Final = "either way"
 LEFT: Final = "left"
 RIGHT: Final = "right"
+LEFT_ONLY: Final = "left, though not right,"
+RIGHT_ONLY: Final = "right, though not left,"
 
 FORWARD_SHARE: Final = 0.7
 """A window goes forward when this much of its speed is along the facing direction (within 45 degrees)."""
@@ -169,7 +163,8 @@ class Region:
     """Failing trials that are neighbours on the grid.
 
     Attributes:
-        side: STRAIGHT; EITHER, where left and right both fail; LEFT or RIGHT, where only that side does.
+        side: STRAIGHT; EITHER, where left and right both fail; LEFT_ONLY or RIGHT_ONLY, where only that side
+            does; LEFT or RIGHT, where the grid does not ask for the other.
         cells: (K, 2) index of speed and of turn rate of every failing trial, of EITHER on both sides.
     """
 
@@ -181,13 +176,16 @@ def failures(grid: Grid) -> list[Region]:
     """All failing trials in regions, the largest first."""
     failed = ~grid.held
     mirrored = _mirror_columns(grid.turn_rates_deg)
-    also = np.where(mirrored >= 0, failed[:, mirrored], False)
-    turn = grid.turn_rates_deg
+    asked = mirrored >= 0
+    also = asked & failed[:, mirrored]
+    left, right = failed & (grid.turn_rates_deg > 0), failed & (grid.turn_rates_deg < 0)
     sides = {
-        STRAIGHT: failed & (turn == 0),
-        EITHER: failed & also & (turn > 0),
-        LEFT: failed & ~also & (turn > 0),
-        RIGHT: failed & ~also & (turn < 0),
+        STRAIGHT: failed & (grid.turn_rates_deg == 0),
+        EITHER: left & also,
+        LEFT_ONLY: left & asked & ~also,
+        RIGHT_ONLY: right & asked & ~also,
+        LEFT: left & ~asked,
+        RIGHT: right & ~asked,
     }
     regions = [
         Region(side, _with_mirrored(cells, mirrored) if side == EITHER else cells)

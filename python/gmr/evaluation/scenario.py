@@ -27,8 +27,8 @@ DEFAULT_SPEEDS: Final = tuple(1 + 0.25 * step for step in range(9))
 DEFAULT_TURN_RATES_DEG: Final = tuple(25.0 * step for step in range(-4, 5))
 """The paper's turn rates, degrees per second, positive to the left."""
 
-MOST_TRIALS: Final = 4_000
-"""More would not fit into the memory of a small machine: a trial's log takes about 0.2 MB."""
+MOST_TRIALS: Final = 2_000
+"""More would not fit into the memory of a small machine: with its figures a trial takes 0.7 MB."""
 
 
 @dataclass(frozen=True, slots=True)
