@@ -11,7 +11,7 @@ import pytest
 import gmr
 from gmr import ChannelLayout, Motion, Skeleton
 from gmr.description import describe
-from gmr.guesses import body_height, guess_unit, guess_up
+from gmr.guesses import guess_body
 from gmr.tpose import has_leading_tpose, leading_rest_frames, without_leading_tpose
 from gmr.units import UNITS, metres_per_unit
 
@@ -48,14 +48,14 @@ def test_a_recording_that_starts_from_rest_is_left_whole(walk: Motion) -> None:
 
 @pytest.mark.parametrize("unit", ["m", "cm", "mm", "in", "ft", "cmu"])
 def test_the_unit_of_a_walk_is_guessed(walk: Motion, unit: str) -> None:
-    guess = guess_unit(walk.with_unit("cmu").to_unit(unit))
+    guess = guess_body(walk.with_unit("cmu").to_unit(unit)).unit
     assert guess is not None
     assert guess.name == unit
     assert 1.4 < guess.body_metres < 1.9
 
 
 def test_no_unit_is_guessed_for_what_is_no_human(walk: Motion) -> None:
-    assert guess_unit(walk.with_unit(1).to_unit(2.0)) is None
+    assert guess_body(walk.with_unit(1).to_unit(2.0)).unit is None
 
 
 @pytest.mark.parametrize(
@@ -68,10 +68,10 @@ def test_up_is_from_feet_to_head(axis: str, turn: tuple[float, float, float]) ->
     )
     layout = ChannelLayout.of(skeleton, [("Xrotation", "Yrotation", "Zrotation"), (), (), ()])
     motion = Motion.from_rows(skeleton, layout, [turn], 0.1)
-    guess = guess_up(motion)
-    assert guess is not None
-    assert (guess.axis, guess.sure) == (axis, True)
-    assert body_height(motion, "XYZ".index(axis[1])) == pytest.approx(2)
+    guess = guess_body(motion)
+    assert guess.up is not None
+    assert (guess.up.axis, guess.up.sure) == (axis, True)
+    assert guess.height == pytest.approx(2)
 
 
 def test_without_frames_nothing_is_guessed(walk: Motion) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gmr.channels import POSITIONS, ROTATIONS
-from gmr.guesses import UnitGuess, UpGuess, body_height, guess_unit, guess_up
+from gmr.guesses import UnitGuess, UpGuess, guess_body
 from gmr.resample import nominal_fps
 from gmr.skeleton import End
 from gmr.tpose import leading_rest_frames
@@ -57,8 +57,7 @@ def describe(motion: Motion, warnings: Sequence[str] = ()) -> Description:
         warnings: what reading it warned of; these come first among the oddities.
     """
     skeleton, layout = motion.skeleton, motion.layout
-    up = guess_up(motion)
-    height = body_height(motion, "XYZ".index(up.axis[1])) if up else None
+    body = guess_body(motion)
     named = layout.names if layout else ()
     rest = leading_rest_frames(motion)
     return Description(
@@ -74,11 +73,11 @@ def describe(motion: Motion, warnings: Sequence[str] = ()) -> Description:
         orders=dict(Counter(" ".join(channels) for channels in named if channels).most_common()),
         moving=tuple(skeleton.names[j] for j in motion.translated.tolist() if skeleton.parents[j] >= 0),
         unit=motion.unit,
-        unit_guess=guess_unit(motion),
-        height=height,
-        up_guess=up,
+        unit_guess=body.unit,
+        height=body.height,
+        up_guess=body.up,
         leading_rest_frames=rest,
-        oddities=(*warnings, *_oddities(motion, rest, up)),
+        oddities=(*warnings, *_oddities(motion, rest, body.up)),
     )
 
 

@@ -52,7 +52,7 @@ def translations_of_rows(skeleton: Skeleton, rows: Rows) -> NDArray[np.float64]:
     base = skeleton.offsets[layout.translated]
     found = np.empty((len(rows), *base.shape))
     found[:] = np.where(given, 0.0, base) if not layout.adds_offset else base
-    found[:, given] += rows.values[:, columns[given]]
+    found[:, given] += rows.values.take(columns[given], axis=1)
     return found
 
 
@@ -63,7 +63,7 @@ def _write_angles(values: NDArray[np.float64], layout: ChannelLayout, rotations:
         return
     whole = np.flatnonzero((columns >= 0).all(axis=1) & (axes[:, :-1] != axes[:, 1:]).all(axis=1))
     if len(whole):
-        chosen = rotations if len(whole) == len(columns) else np.ascontiguousarray(rotations[:, whole])
+        chosen = rotations if len(whole) == len(columns) else rotations.take(whole, axis=1)
         angles = _core.quaternions_to_euler(chosen, np.ascontiguousarray(axes[whole]))
         values[:, columns[whole]] = angles
     for slot in np.setdiff1d(np.arange(len(columns)), whole).tolist():

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,7 @@ from gmr.units import UNITS
 if TYPE_CHECKING:
     from gmr.motion import Motion
 
-__all__ = ["UnitGuess", "UpGuess", "body_height", "guess_unit", "guess_up"]
+__all__ = ["BodyGuess", "UnitGuess", "UpGuess", "guess_body"]
 
 _SAMPLES = 200
 _TALL, _SHORT = 2.2, 1.2
@@ -47,16 +48,35 @@ class UnitGuess:
     body_metres: float
 
 
-def guess_up(motion: Motion) -> UpGuess | None:
-    """Which axis points up: from feet to head where joints are named so, else the longest of the body.
+@dataclass(frozen=True)
+class BodyGuess:
+    """The body of a motion, as far as it can be told; None where it cannot.
 
-    Returns:
-        None where there are no frames, or the body has no extent.
+    Args:
+        up: which way is up.
+        height: of the upright body in file units, from the lowest to the highest joint in its tallest frames.
+        unit: the unit with which the body is nearest to a human's usual height.
     """
-    positions = _sampled(motion)
-    if not len(positions):
-        return None
-    names = motion.skeleton.names
+
+    up: UpGuess | None
+    height: float | None
+    unit: UnitGuess | None
+
+
+def guess_body(motion: Motion) -> BodyGuess:
+    """Looks at up to 200 frames from all over the recording; a T-pose in front of it is left out."""
+    recorded = without_leading_tpose(motion)
+    positions = recorded[:: max(1, recorded.frame_count // _SAMPLES)].positions()
+    positions = positions[np.isfinite(positions).all(axis=(1, 2))]
+    up = _up(motion.skeleton.names, positions) if len(positions) else None
+    if up is None:
+        return BodyGuess(None, None, None)
+    height = float(np.quantile(np.ptp(positions[..., "XYZ".index(up.axis[1])], axis=1), 0.9))
+    return BodyGuess(up, height, _unit(height))
+
+
+def _up(names: Sequence[str], positions: NDArray[Any]) -> UpGuess | None:
+    """From feet to head where joints are named so, else the longest side; None for a body without extent."""
     high = [joint for joint, name in enumerate(names) if _HIGH.search(name)]
     low = [joint for joint, name in enumerate(names) if _LOW.search(name)]
     if high and low:
@@ -67,35 +87,11 @@ def guess_up(motion: Motion) -> UpGuess | None:
     return UpGuess(f"+{'XYZ'[int(extents.argmax())]}", sure=False) if extents.max() > 0 else None
 
 
-def body_height(motion: Motion, axis: int = 1) -> float:
-    """Height of the upright body in file units: from the lowest to the highest joint, in its tallest frames.
-
-    Args:
-        motion: any; a T-pose in front is left out.
-        axis: 0, 1, 2 for x, y, z up.
-    """
-    positions = _sampled(motion)
-    if not len(positions):
-        return math.nan
-    return float(np.quantile(np.ptp(positions[..., axis], axis=1), 0.9))
-
-
-def guess_unit(motion: Motion) -> UnitGuess | None:
-    """The unit with which the body is nearest to a human's usual height; None where no unit makes it one."""
-    up = guess_up(motion)
-    if up is None:
-        return None
-    height = body_height(motion, "XYZ".index(up.axis[1]))
+def _unit(height: float) -> UnitGuess | None:
+    """The unit with which ``height`` is a human's."""
     fitting = [
         UnitGuess(name, UNITS[name], height * UNITS[name])
         for name in _GUESSED_UNITS
         if _SHORT <= height * UNITS[name] <= _TALL
     ]
     return min(fitting, key=lambda guess: abs(math.log(guess.body_metres / _USUAL)), default=None)
-
-
-def _sampled(motion: Motion) -> NDArray[Any]:
-    """(<= 200, J, 3) positions of finite frames from all over the recording."""
-    recorded = without_leading_tpose(motion)
-    positions = recorded[:: max(1, recorded.frame_count // _SAMPLES)].positions()
-    return positions[np.isfinite(positions).all(axis=(1, 2))]

@@ -52,7 +52,8 @@ def _mirrored_rows(motion: Motion, rows: Rows, pair: NDArray[np.int32]) -> Motio
     channels = [np.arange(layout.starts[image], layout.starts[image + 1]) for image in pair]
     taken = np.concatenate(channels) if channels else np.empty(0, np.intp)
     flipped = (layout.column_axes == 0) != layout.column_turns
-    values = rows.values[:, taken] * np.where(flipped, -1.0, 1.0)[taken]
+    values = rows.values.take(taken, axis=1)
+    values *= np.where(flipped, -1.0, 1.0)[taken]
     mirrored = _mirrored_layout(layout, pair)
     skeleton = Skeleton.post_rotation(
         motion.skeleton.names,
@@ -69,8 +70,10 @@ def _mirrored_pose(motion: Motion, pose: Pose, pairs: Iterable[tuple[str, str]] 
     levels = _levels(motion, pairs)
     skeleton, pair = levels[0]
     slots = _paired_slots(levels, pose.layout if motion.dropped is None else motion.dropped.layout)
+    rotations = pose.rotations.take(slots, axis=1)
+    rotations *= _QUATERNION
     source = Pose(
-        read_only(pose.rotations[:, slots] * _QUATERNION),
+        read_only(rotations),
         pair[pose.translated],
         read_only(pose.translations * _POINT),
         None if pose.layout is None else _mirrored_layout(pose.layout, pair),

@@ -96,7 +96,7 @@ def _needed_only(motion: Motion, dummies: Sequence[int]) -> Motion:
     owners = [kept[joint] for joint in lean.slot_joints.tolist()]
     staying = [k for k, joint in enumerate(pose.translated.tolist()) if joint in place]
     source = Pose(
-        read_only(np.ascontiguousarray(rotations[:, layout.owned_slots[owners]])),
+        read_only(rotations.take(layout.owned_slots[owners], axis=1)),
         np.array([place[joint] for joint in pose.translated[staying].tolist()], np.int32),
         read_only(np.ascontiguousarray(pose.translations[:, staying])),
         lean,

@@ -156,13 +156,13 @@ def _changed(motion: Motion, changes: _Changes) -> Motion:
 def _in_known_unit(motion: Motion, stated: float | None) -> Motion:
     """The motion with the unit stated, or guessed and said."""
     from gmr.errors import GmrError
-    from gmr.guesses import guess_unit
+    from gmr.guesses import guess_body
 
     if stated is not None:
         return motion.with_unit(stated)
     if motion.unit is not None:
         return motion
-    guess = guess_unit(motion)
+    guess = guess_body(motion).unit
     if guess is None:
         raise GmrError(f"{motion.name}: no unit makes this body a human's height; state it with --from-unit")
     say(
