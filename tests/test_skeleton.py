@@ -57,7 +57,7 @@ def test_an_unknown_joint_is_answered_with_the_known(joint: str | int, said: str
 
 
 def test_a_name_that_two_joints_have_is_ambiguous() -> None:
-    with pytest.raises(SkeletonError, match=r"2 joints are named 'Hand'.*\[1, 2\]"):
+    with pytest.raises(SkeletonError, match=r"2 joints are named 'Hand'.*by index, 1, 2"):
         chain("Hips", "Hand", "Hand").index("Hand")
 
 

@@ -84,10 +84,11 @@ def drop_dummies(motion: Motion) -> Motion:
     dummies = find_dummies(motion)
     if not dummies:
         return motion
+    gone = set(dummies)
     skeleton, pose = motion.skeleton, motion.pose
-    rotations, links = pose.rotations.copy(), skeleton.links.copy()
+    rotations = pose.rotations.copy()
     parents, slots = skeleton.parents.copy(), skeleton.slots.copy()
-    for dummy in _parents_first(skeleton, dummies):
+    for dummy in (joint for joint in skeleton.parents_first if joint in gone):
         above, children = slots[dummy], skeleton.children[dummy]
         for slot in sorted({int(skeleton.slots[child]) for child in children} - {-1}):
             if above >= 0:
@@ -95,12 +96,11 @@ def drop_dummies(motion: Motion) -> Motion:
         for child in children:
             parents[child] = parents[dummy]
             slots[child] = slots[child] if slots[child] >= 0 else above
-        links[links == dummy] = parents[dummy]
     kept = np.setdiff1d(np.arange(skeleton.joint_count), dummies)
     moved = np.isin(pose.translated, kept)
     return replace(
         motion,
-        skeleton=_subset(skeleton, kept, parents, slots, links),
+        skeleton=_subset(skeleton, kept, parents, slots),
         source=Pose(
             read_only(rotations),
             _renumbering(skeleton.joint_count, kept)[pose.translated[moved]],
@@ -121,7 +121,8 @@ def restore_dummies(motion: Motion) -> Motion:
         return motion
     skeleton, pose = record.skeleton, motion.pose
     rotations = pose.rotations.copy()
-    for dummy in reversed(_parents_first(skeleton, record.dummies)):
+    gone = set(record.dummies)
+    for dummy in (joint for joint in reversed(skeleton.parents_first) if joint in gone):
         above = skeleton.slots[dummy]
         for slot in sorted({int(skeleton.slots[child]) for child in skeleton.children[dummy]} - {-1}):
             if above >= 0:
@@ -137,18 +138,6 @@ def restore_dummies(motion: Motion) -> Motion:
     return replace(motion, skeleton=skeleton, source=source, dropped=record.before)
 
 
-def _parents_first(skeleton: Skeleton, joints: tuple[int, ...]) -> list[int]:
-    """The joints so ordered that none comes before one that it hangs below."""
-    return sorted(joints, key=lambda joint: (_depth(skeleton, joint), joint))
-
-
-def _depth(skeleton: Skeleton, joint: int) -> int:
-    depth = 0
-    while (joint := int(skeleton.parents[joint])) >= 0:
-        depth += 1
-    return depth
-
-
 def _renumbering(count: int, kept: NDArray[np.intp]) -> NDArray[np.int32]:
     """(count + 1,) the new index of each old joint, -1 for those not kept and, as the last entry, for -1."""
     found = np.full(count + 1, -1, np.int32)
@@ -161,9 +150,13 @@ def _subset(
     kept: NDArray[np.intp],
     parents: NDArray[np.int32],
     slots: NDArray[np.int32],
-    links: NDArray[np.int32],
 ) -> Skeleton:
-    """The kept joints, hanging and turning as ``parents``, ``slots`` and ``links`` (in old numbers) say."""
+    """The kept joints, hanging and turning as ``parents`` and ``slots`` (in old numbers) say."""
+    staying = set(kept.tolist())
+    links = skeleton.links.copy()
+    for root in np.flatnonzero(links >= 0).tolist():
+        while links[root] >= 0 and links[root] not in staying:
+            links[root] = skeleton.parents[links[root]]
     renumbered = _renumbering(skeleton.joint_count, kept)
     return Skeleton(
         names=tuple(skeleton.names[joint] for joint in kept),

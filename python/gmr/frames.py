@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from gmr.arrays import frozen, read_only
 from gmr.channels import ChannelLayout
-from gmr.errors import GmrError
+from gmr.errors import GmrError, SkeletonError
+from gmr.skeleton import Skeleton
 
-__all__ = ["Pose", "Rows"]
+__all__ = ["Pose", "Rows", "check_fit"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +83,26 @@ class Pose:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _owned, (Pose, self.rotations, self.translated, self.translations, self.layout)
+
+
+def check_fit(skeleton: Skeleton, source: Rows | Pose) -> None:
+    """Raises unless the frames are those of this skeleton."""
+    if isinstance(source, Rows):
+        if not source.layout.fits(skeleton):
+            raise SkeletonError(
+                "the channel layout is not that of the skeleton: parents or rotation slots differ. "
+                "Make both from the same parents and channels (Skeleton.post_rotation, ChannelLayout.of)."
+            )
+        return
+    slots = source.rotations.shape[1]
+    if slots != skeleton.slot_count:
+        raise SkeletonError(f"rotations for {slots} slots, but the skeleton has {skeleton.slot_count}")
+    translated = source.translated.tolist()
+    if len(set(translated)) < len(translated) or not set(translated) <= set(range(skeleton.joint_count)):
+        raise SkeletonError(f"translated joints {translated} must be distinct joints of the skeleton")
+    lacking = [skeleton.names[root] for root in skeleton.roots if root not in translated]
+    if lacking:
+        raise SkeletonError(f"root '{lacking[0]}' has no translation; every root needs one")
 
 
 def _frames_of(array: NDArray[Any], what: str, shape: tuple[int | None, ...]) -> NDArray[np.float64]:

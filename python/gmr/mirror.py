@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["mirror"]
 
+Pairs = tuple[tuple[str, str], ...] | None
 _POINT = np.array([-1.0, 1.0, 1.0])
 _QUATERNION = np.array([1.0, -1.0, -1.0, 1.0])
 
@@ -40,32 +42,49 @@ def mirror(motion: Motion, pairs: Mapping[str, str] | Iterable[tuple[str, str]] 
     Raises:
         SkeletonError: a joint of one side has no partner on the other.
     """
-    pairs = list(pairs.items()) if isinstance(pairs, Mapping) else pairs
+    stated = None if pairs is None else tuple(pairs.items() if isinstance(pairs, Mapping) else pairs)
     if isinstance(motion.source, Rows):
-        return _mirrored_rows(motion, motion.source, pair_joints(motion.skeleton, pairs))
-    return _mirrored_pose(motion, motion.source, pairs)
+        return _mirrored_rows(motion, motion.source, stated)
+    return _mirrored_pose(motion, motion.source, stated)
 
 
-def _mirrored_rows(motion: Motion, rows: Rows, pair: NDArray[np.int32]) -> Motion:
+def _mirrored_rows(motion: Motion, rows: Rows, pairs: Pairs) -> Motion:
     """Columns of the two sides exchanged: x positions and the angles about y and z change sign."""
-    layout = rows.layout
-    channels = [np.arange(layout.starts[image], layout.starts[image + 1]) for image in pair]
-    taken = np.concatenate(channels) if channels else np.empty(0, np.intp)
+    exchange = _exchange(motion.skeleton, rows.layout, pairs)
+    values = rows.values.take(exchange.columns, axis=1)
+    values *= exchange.signs
+    return replace(motion, skeleton=exchange.skeleton, source=Rows(read_only(values), exchange.layout))
+
+
+class _Exchange(NamedTuple):
+    """What exchanging the sides of a file does to its rows, and whose rows they are then."""
+
+    columns: NDArray[np.int32]
+    """(C,) the column that each is taken from."""
+    signs: NDArray[np.float64]
+    """(C,) what it is multiplied by."""
+    skeleton: Skeleton
+    layout: ChannelLayout
+
+
+@lru_cache(maxsize=16)  # the files of a folder mostly share one skeleton
+def _exchange(skeleton: Skeleton, layout: ChannelLayout, pairs: Pairs) -> _Exchange:
+    pair = pair_joints(skeleton, pairs)
+    ranges = [np.arange(layout.starts[image], layout.starts[image + 1]) for image in pair]
+    columns = np.concatenate(ranges).astype(np.int32) if ranges else np.empty(0, np.int32)
     flipped = (layout.column_axes == 0) != layout.column_turns
-    values = rows.values.take(taken, axis=1)
-    values *= np.where(flipped, -1.0, 1.0)[taken]
     mirrored = _mirrored_layout(layout, pair)
-    skeleton = Skeleton.post_rotation(
-        motion.skeleton.names,
-        motion.skeleton.parents,
-        motion.skeleton.offsets[pair] * _POINT,
-        ends=motion.skeleton.ends[pair],
+    body = Skeleton.post_rotation(
+        skeleton.names,
+        skeleton.parents,
+        skeleton.offsets[pair] * _POINT,
+        ends=skeleton.ends[pair],
         turning=np.flatnonzero(np.diff(mirrored.starts)).tolist(),
     )
-    return replace(motion, skeleton=skeleton, source=Rows(read_only(values), mirrored))
+    return _Exchange(columns, np.where(flipped, -1.0, 1.0)[columns], body, mirrored)
 
 
-def _mirrored_pose(motion: Motion, pose: Pose, pairs: Iterable[tuple[str, str]] | None) -> Motion:
+def _mirrored_pose(motion: Motion, pose: Pose, pairs: Pairs) -> Motion:
     """Slots and translations of the two sides exchanged."""
     levels = _levels(motion, pairs)
     skeleton, pair = levels[0]
@@ -82,9 +101,7 @@ def _mirrored_pose(motion: Motion, pose: Pose, pairs: Iterable[tuple[str, str]] 
     return replace(motion, skeleton=_mirrored_skeleton(skeleton, pair), source=source, dropped=dropped)
 
 
-def _levels(
-    motion: Motion, pairs: Iterable[tuple[str, str]] | None
-) -> list[tuple[Skeleton, NDArray[np.int32]]]:
+def _levels(motion: Motion, pairs: Pairs) -> list[tuple[Skeleton, NDArray[np.int32]]]:
     """The motion's skeleton and those it had before dummies were dropped, each with its pairs."""
     records: list[Dropped] = []
     record = motion.dropped

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from gmr.channels import ChannelLayout
-from gmr.errors import GmrError, SkeletonError
-from gmr.frames import Pose, Rows
+from gmr.errors import GmrError
+from gmr.frames import Pose, Rows, check_fit
 from gmr.skeleton import Skeleton
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class Motion:
             raise GmrError(f"a frame cannot last {self.frame_time} seconds; give 0 or more")
         if self.unit is not None and not (math.isfinite(self.unit) and self.unit > 0):
             raise GmrError(f"a file unit cannot be {self.unit} metres; give more than 0, or None if unknown")
-        _check_fit(self.skeleton, self.source)
+        check_fit(self.skeleton, self.source)
 
     @classmethod
     def from_rows(
@@ -315,23 +315,3 @@ def _same_frames(one: Motion, other: Motion) -> bool:
         np.array_equal(getattr(one, key), getattr(other, key))
         for key in ("translated", "translations", "rotations")
     )
-
-
-def _check_fit(skeleton: Skeleton, source: Rows | Pose) -> None:
-    """Raises unless the frames are those of this skeleton."""
-    if isinstance(source, Rows):
-        if not source.layout.fits(skeleton):
-            raise SkeletonError(
-                "the channel layout is not that of the skeleton: parents or rotation slots differ. "
-                "Make both from the same parents and channels (Skeleton.post_rotation, ChannelLayout.of)."
-            )
-        return
-    slots = source.rotations.shape[1]
-    if slots != skeleton.slot_count:
-        raise SkeletonError(f"rotations for {slots} slots, but the skeleton has {skeleton.slot_count}")
-    translated = source.translated.tolist()
-    if len(set(translated)) < len(translated) or not set(translated) <= set(range(skeleton.joint_count)):
-        raise SkeletonError(f"translated joints {translated} must be distinct joints of the skeleton")
-    lacking = [skeleton.names[root] for root in skeleton.roots if root not in translated]
-    if lacking:
-        raise SkeletonError(f"root '{lacking[0]}' has no translation; every root needs one")

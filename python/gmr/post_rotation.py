@@ -74,18 +74,21 @@ def _needed_only(motion: Motion, dummies: Sequence[int]) -> Motion:
     """The motion, whose layout fits, without those ``dummies`` that the post-rotation form can do without."""
     layout, pose = cast(ChannelLayout, motion.layout), motion.pose
     names, parents = list(layout.names), list(layout.parents)
+    children = [set(joints) for joints in motion.skeleton.children]
     rotations = pose.rotations.copy()
     for dummy in dummies:
         parent = parents[dummy]
         above, own = layout.owned_slots[[parent, dummy]]
         turns = np.abs(rotations[:, own, :3]).max(initial=0) > _STILL
-        if turns and parents.count(parent) > 1:
+        if turns and len(children[parent]) > 1:
             continue
         if turns:
             rotations[:, above] = multiply(rotations[:, above], rotations[:, own])
             names[parent] = turning_freely(names[parent])
-        parents = [parent if entry == dummy else entry for entry in parents]
+        for child in children[dummy]:
+            parents[child] = parent
         parents[dummy] = _GONE
+        children[parent] = children[parent] - {dummy} | children[dummy]
     kept = [joint for joint, parent in enumerate(parents) if parent != _GONE]
     place = {joint: k for k, joint in enumerate(kept)} | {-1: -1}
     lean = ChannelLayout(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ __all__ = ["other_side", "pair_joints"]
 _STRONG = (
     re.compile(r"Left(?![a-z])|Right(?![a-z])|(?<![A-Z])(?:LEFT|RIGHT)(?![A-Z])"),
     re.compile(r"(?<![A-Za-z])(?:left|right)(?![a-z])"),
-    re.compile(r"(?<![A-Za-z0-9])[LRlr](?![A-Za-z0-9])"),
+    re.compile(r"(?<=[^A-Za-z0-9])[LRlr](?![A-Za-z0-9])|(?<![A-Za-z0-9])[LRlr](?=[^A-Za-z0-9])"),
 )
 _WEAK = (
     re.compile(r"left|right", re.IGNORECASE),
@@ -52,49 +53,54 @@ def pair_joints(
     """
     stated = _both_ways(skeleton, pairs)
     found = np.full(skeleton.joint_count, -1, np.int32)
-    level: list[tuple[tuple[int, ...], tuple[int, ...]]] = [(skeleton.roots, skeleton.roots)]
-    while level:
-        joints, images = level.pop()
-        for joint in joints:
-            found[joint] = _image(skeleton, joint, joints, images, stated)
-            level.append((skeleton.children[joint], skeleton.children[found[joint]]))
+    families = [(skeleton.roots, skeleton.roots)]
+    while families:
+        joints, images = families.pop()
+        for joint, image in zip(joints, _images(skeleton, joints, images, stated), strict=True):
+            found[joint] = image
+            families.append((skeleton.children[joint], skeleton.children[image]))
     astray = np.flatnonzero(found[found] != np.arange(len(found)))
     if len(astray):
         raise _unpaired(skeleton, int(astray[0]))
     return found
 
 
-def _image(
-    skeleton: Skeleton,
-    joint: int,
-    siblings: tuple[int, ...],
-    images: tuple[int, ...],
-    stated: Mapping[str, str],
-) -> int:
-    """The image of one joint among ``images``, the children of its parent's image."""
-    wanted = _wanted(skeleton, joint, siblings == images, stated)
-    rank = _alike(skeleton, siblings, joint, skeleton.names[joint]).index(joint)
-    for name in wanted:
-        candidates = _alike(skeleton, images, joint, name)
-        if rank < len(candidates):
-            return candidates[rank]
-    raise _unpaired(skeleton, joint)
+def _images(
+    skeleton: Skeleton, joints: tuple[int, ...], images: tuple[int, ...], stated: Mapping[str, str]
+) -> Iterator[int]:
+    """The image of each of ``joints``, which are siblings, among the children of their parent's image.
+
+    Of several with the same name the first is the image of the first, and so on; end sites have no names of
+    their own.
+    """
+    by_name: dict[str | None, list[int]] = {}
+    for image in images:
+        by_name.setdefault(_label(skeleton, image), []).append(image)
+    seen: Counter[str | None] = Counter()
+    for joint in joints:
+        label = _label(skeleton, joint)
+        wanted = [None] if label is None else _wanted(label, joints == images, stated)
+        rank = seen[label]
+        seen[label] += 1
+        for name in wanted:
+            if rank < len(by_name.get(name, ())):
+                yield by_name[name][rank]
+                break
+        else:
+            raise _unpaired(skeleton, joint)
 
 
-def _wanted(skeleton: Skeleton, joint: int, in_the_middle: bool, stated: Mapping[str, str]) -> list[str]:
+def _label(skeleton: Skeleton, joint: int) -> str | None:
+    """A joint's name, None for an end site."""
+    return None if skeleton.ends[joint] else skeleton.names[joint]
+
+
+def _wanted(name: str, in_the_middle: bool, stated: Mapping[str, str]) -> list[str | None]:
     """What the image of a joint may be called, likeliest first; its parent may be its own image."""
-    name = skeleton.names[joint]
     if name in stated:
         return [stated[name]]
     has_a_side = any(pattern.search(name) for pattern in _STRONG)
-    return [*other_side(name)] + ([] if in_the_middle and has_a_side else [name])
-
-
-def _alike(skeleton: Skeleton, joints: tuple[int, ...], like: int, name: str) -> list[int]:
-    """Those of ``joints`` that are called ``name``; for an end site all end sites, by any name."""
-    if skeleton.ends[like]:
-        return [joint for joint in joints if skeleton.ends[joint]]
-    return [joint for joint in joints if skeleton.names[joint] == name and not skeleton.ends[joint]]
+    return [*other_side(name), *([] if in_the_middle and has_a_side else [name])]
 
 
 def _both_ways(

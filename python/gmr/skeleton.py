@@ -140,6 +140,14 @@ class Skeleton:
         return tuple(tuple(joints) for joints in found)
 
     @cached_property
+    def parents_first(self) -> tuple[int, ...]:
+        """All joints so ordered that none comes before its parent."""
+        order = list(self.roots)
+        for joint in order:  # grows while it is walked
+            order.extend(self.children[joint])
+        return tuple(order)
+
+    @cached_property
     def frame_slots(self) -> NDArray[np.int32]:
         """(J,) slot whose world rotation is each joint's frame as BVH means it (post-rotation); -1: the
         world's.
@@ -179,13 +187,12 @@ class Skeleton:
             raise SkeletonError(
                 f"there is no joint {joint}; the skeleton has joints 0 to {self.joint_count - 1}"
             )
-        found = self._joints_by_name.get(joint, ())
+        found = self._joints_by_name.get(joint, [])
         if len(found) == 1:
             return found[0]
         if found:
-            raise SkeletonError(
-                f"{len(found)} joints are named '{joint}': say which by index, one of {list(found)}"
-            )
+            listed = ", ".join(map(str, found[:8])) + (", ..." if len(found) > 8 else "")
+            raise SkeletonError(f"{len(found)} joints are named '{joint}': say which by index, {listed}")
         near = difflib.get_close_matches(joint, self.names, n=3)
         hint = f"did you mean {_some(near)}?" if near else f"the skeleton has {_some(self.names)}."
         raise SkeletonError(f"there is no joint '{joint}'; {hint}")
@@ -195,10 +202,10 @@ class Skeleton:
         return np.array([self.index(joint) for joint in joints], np.int32)
 
     @cached_property
-    def _joints_by_name(self) -> dict[str, tuple[int, ...]]:
-        found: dict[str, tuple[int, ...]] = {}
+    def _joints_by_name(self) -> dict[str, list[int]]:
+        found: dict[str, list[int]] = {}
         for joint, name in enumerate(self.names):
-            found[name] = (*found.get(name, ()), joint)
+            found.setdefault(name, []).append(joint)
         return found
 
     def __repr__(self) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -79,5 +80,6 @@ def _scaled(motion: Motion, factor: float) -> Motion:
     return replace(motion, skeleton=_scaled_offsets(motion.skeleton, factor), source=frames, dropped=dropped)
 
 
+@lru_cache(maxsize=16)  # the files of a folder mostly share one skeleton
 def _scaled_offsets(skeleton: Skeleton, factor: float) -> Skeleton:
     return replace(skeleton, offsets=read_only(skeleton.offsets * factor))
