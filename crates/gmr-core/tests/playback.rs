@@ -8,7 +8,7 @@ use gmr_core::matching::ground::Placement;
 use gmr_core::matching::path::Segment;
 use gmr_core::matching::playback::{HALF_LIFE, Playback, PlaybackError, shown_positions};
 use gmr_core::matching::trial::{Profile, Progress, Trials, run_trials};
-use synthetic::{RATE, Walk, database, database_at};
+use synthetic::{RATE, Skeleton, Walk, database, database_at};
 
 const JOINTS: usize = 4;
 
@@ -101,7 +101,7 @@ fn a_jump_shows_the_continuing_pose_first_and_the_new_ones_soon() {
 /// The largest kink at the jumps, in a motion of six of them, some during others, `finer` times 60 Hz.
 fn kink_at_jumps(finer: u32) -> f32 {
     let gaits = GAITS.map(|gait| Walk { frames: gait.frames * finer as usize, ..gait });
-    let database = database_at(RATE * f64::from(finer), &gaits);
+    let database = database_at(RATE * f64::from(finer), Skeleton::Plain, &gaits);
     let runs = [0..100, 350..420, 20..26, 430..470, 110..118, 330..340, 40..100];
     let shown = play(&database, &runs.clone().map(|run| run.start * finer..run.end * finer), HALF_LIFE);
     let mut step = 0;
@@ -133,6 +133,43 @@ fn a_clips_end_is_left_without_a_break() {
     }
     let played = play(&database, &[250..299, 0..50], HALF_LIFE);
     assert!(played.kink(49) < 0.02, "as trials do it, from the last row but one: {}", played.kink(49));
+}
+
+/// Nor in which rows trials play, nor in how far the poses at their jumps are apart.
+#[test]
+fn a_joint_that_only_carries_the_body_changes_nothing() {
+    let [plain, carried] =
+        [Skeleton::Plain, Skeleton::Carried].map(|skeleton| database_at(RATE, skeleton, &GAITS));
+    let bare = play(&plain, &[0..100, 350..420, 20..60], HALF_LIFE);
+    let playback = Playback {
+        database: &carried,
+        rows: &bare.rows,
+        placements: &bare.placements,
+        half_life: HALF_LIFE,
+        joints: Some(&[1, 2, 3, 4]),
+    };
+    let mut positions = vec![0.0; 3 * bare.positions.len()];
+    shown_positions(&playback, &mut positions).unwrap();
+    for (&shown, expected) in positions.as_chunks::<3>().0.iter().zip(&bare.positions) {
+        assert!(Vec3::from(shown).distance(*expected) < 1e-5, "{shown:?} {expected}");
+    }
+
+    let profiles =
+        [Profile { segments: vec![Segment { duration: 8.0, speed: 2.0, turn_rate: 0.5 }], record_from: 0.0 }];
+    let settings = Default::default();
+    let [bare, carried] = [&plain, &carried].map(|database| {
+        let trials = Trials { database, profiles: &profiles, settings: &settings, threads: 1 };
+        run_trials(&trials, &Progress::default()).unwrap().remove(0)
+    });
+    let mut jumps = 0;
+    for (bare, carried) in bare.steps.iter().zip(&carried.steps) {
+        assert_eq!(bare.choice.row, carried.choice.row);
+        if bare.choice.discontinuity.is_finite() {
+            jumps += 1;
+            assert!((bare.choice.discontinuity - carried.choice.discontinuity).abs() < 1e-5);
+        }
+    }
+    assert!(jumps > 2);
 }
 
 #[test]

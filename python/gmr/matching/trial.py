@@ -152,7 +152,8 @@ class TrialLog:
         cost_pose, cost_trajectory: float32, the row's squared weighted distance to the query over the pose
             features and over the trajectory features; NaN where nothing was searched.
         discontinuity: float32, mean distance in metres between the joints of the pose left and of the pose
-            entered, each in its root's frame; NaN where there was no jump.
+            entered, each seen from its simulation root; NaN where there was no jump. A joint that only
+            carries the hips (a root on the ground) does not count.
     """
 
     rate: float

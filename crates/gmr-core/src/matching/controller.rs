@@ -18,6 +18,7 @@ use std::ops::Range;
 
 use glam::{DVec2, Vec3};
 
+use super::carriers::body;
 use super::database::Database;
 use super::features::TrajectorySample;
 use super::ground::Placement;
@@ -79,8 +80,8 @@ pub struct Choice {
     pub cost_pose: f32,
     /// Cost of the row over the trajectory dimensions; NaN where nothing was searched.
     pub cost_trajectory: f32,
-    /// Mean distance in metres between the joints of the continuing row and of this one, each in its root's frame;
-    /// NaN where there was no jump.
+    /// Mean distance in metres between the body's joints in the continuing row and in this one, each seen from its
+    /// simulation root; NaN where there was no jump.
     pub discontinuity: f32,
 }
 
@@ -92,6 +93,7 @@ pub struct Controller<'a> {
     path: &'a ReferencePath,
     samples: Vec<TrajectorySample>,
     is_trajectory: Vec<bool>,
+    body: Vec<usize>,
     query: Vec<f32>,
     history: Vec<Placement>,
     continuing: u32,
@@ -113,6 +115,7 @@ impl<'a> Controller<'a> {
             path,
             samples: database.schema().trajectory(),
             is_trajectory: database.schema().is_trajectory(),
+            body: body(database.topology(), database.translated()),
             query: vec![0.0; database.dims()],
             history: vec![path.at(0.0)],
             continuing: 0,
@@ -214,10 +217,7 @@ impl<'a> Controller<'a> {
     }
 
     fn neighbourhood(&self) -> Range<u32> {
-        let clip = self.database.clip_rows(self.continuing);
-        let within = self.settings.exclude_within;
-        let start = self.continuing.saturating_sub(within).max(clip.start);
-        start..self.continuing.saturating_add(within).saturating_add(1).min(clip.end)
+        near(self.continuing, self.settings.exclude_within, &self.database.clip_rows(self.continuing))
     }
 
     /// Puts what is asked for into the trajectory dimensions of the query.
@@ -252,8 +252,8 @@ impl<'a> Controller<'a> {
 
     fn discontinuity(&self, row: u32) -> f32 {
         let [from, to] = [self.continuing, row].map(|row| self.database.position_row(row).as_chunks::<3>().0);
-        let distances = from.iter().zip(to).map(|(&a, &b)| f64::from(Vec3::from(a).distance(Vec3::from(b))));
-        (distances.sum::<f64>() / from.len() as f64) as f32
+        let distance = |&joint: &usize| f64::from(Vec3::from(from[joint]).distance(Vec3::from(to[joint])));
+        (self.body.iter().map(distance).sum::<f64>() / self.body.len() as f64) as f32
     }
 
     fn advance(&mut self, shown: u32) {
@@ -262,5 +262,25 @@ impl<'a> Controller<'a> {
         self.history.push(self.placement().advanced(displacement, step.turn.into()));
         // A clip's last row can only be shown where the schema has no future; the search is forced there again.
         self.continuing = self.database.next_row(shown).unwrap_or(shown);
+    }
+}
+
+/// The rows of `clip` that are at most `within` frames from `row`.
+fn near(row: u32, within: u32, clip: &Range<u32>) -> Range<u32> {
+    let end = row.saturating_add(within).saturating_add(1);
+    row.saturating_sub(within).max(clip.start)..end.min(clip.end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::near;
+
+    #[test]
+    fn the_neighbourhood_includes_both_its_ends_and_keeps_to_the_clip() {
+        assert_eq!(near(150, 20, &(100..300)), 130..171);
+        assert_eq!(near(110, 20, &(100..300)), 100..131);
+        assert_eq!(near(295, 20, &(100..300)), 275..300);
+        assert_eq!(near(7, 0, &(0..300)), 7..8);
+        assert_eq!(near(7, u32::MAX, &(0..300)), 0..300);
     }
 }

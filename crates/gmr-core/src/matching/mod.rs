@@ -1,6 +1,7 @@
 //! Motion matching: simulation root, features, exact nearest-neighbour index, controller and trials.
 
 pub mod builder;
+pub mod carriers;
 pub mod controller;
 pub mod database;
 pub mod features;
@@ -10,6 +11,7 @@ pub mod inertialization;
 pub mod normalization;
 pub mod path;
 pub mod playback;
+mod pose;
 pub mod request;
 pub mod root;
 pub mod start;

@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use glam::{DQuat, DVec2, DVec3, Quat, Vec3};
+use glam::{DQuat, DVec2, DVec3};
 
 use super::database::Database;
 use super::ground::Placement;
@@ -14,7 +14,8 @@ use super::inertialization::{
     DecaySpring, Moving, Turning, inertialize_transition, inertialize_transition_rotation,
     inertialize_update, inertialize_update_rotation,
 };
-use crate::error::{JobError, ShapeError};
+use super::pose::PoseReader;
+use crate::error::{JobError, ShapeError, TopologyError};
 use crate::kinematics::{ForwardKinematics, Pose, World, forward_kinematics};
 use crate::skeleton::NONE;
 
@@ -53,13 +54,14 @@ pub fn shown_positions(playback: &Playback, positions: &mut [f32]) -> Result<(),
     }
     let translated: Vec<i32> = (0..database.joint_count() as i32).collect();
     let offsets = vec![0.0; 3 * database.joint_count()];
-    let mut body = Body::new(playback);
+    let reader = PoseReader::new(database)?;
+    let mut body = Body::new(playback, &reader);
     let mut pose = LocalPoses::default();
     for block in positions.chunks_mut(width * BLOCK) {
         pose.clear();
         (0..block.len() / width).for_each(|_| body.show(&mut pose));
         let job = ForwardKinematics {
-            topology: database.topology(),
+            topology: reader.topology(),
             offsets: &offsets,
             translated: &translated,
             pose: Pose::Quaternions {
@@ -108,8 +110,8 @@ impl LocalPoses {
 /// The offsets of everything that moves, and the step that is shown next.
 struct Body<'a> {
     playback: &'a Playback<'a>,
+    reader: &'a PoseReader<'a>,
     spring: DecaySpring,
-    vectors: BoneVectors,
     step: usize,
     /// `(x, heading, z)`.
     root: Moving<DVec3>,
@@ -118,12 +120,12 @@ struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    fn new(playback: &'a Playback<'a>) -> Self {
+    fn new(playback: &'a Playback<'a>, reader: &'a PoseReader<'a>) -> Self {
         let database = playback.database;
         Self {
             playback,
+            reader,
             spring: DecaySpring::new(playback.half_life, 1.0 / database.rate()),
-            vectors: BoneVectors::new(database),
             step: 0,
             root: Moving::default(),
             slots: vec![Moving::default(); database.slot_count()],
@@ -153,32 +155,31 @@ impl<'a> Body<'a> {
     }
 
     fn jump(&mut self, from: u32, to: u32) {
-        let database = self.playback.database;
         self.root = inertialize_transition(self.root, self.root_at(from), self.root_at(to));
         for (slot, offset) in self.slots.iter_mut().enumerate() {
-            let [from, to] = [from, to].map(|row| turning(database, row, slot));
+            let [from, to] = [from, to].map(|row| self.reader.turning(row, slot));
             *offset = inertialize_transition_rotation(*offset, from, to);
         }
         for (joint, offset) in self.bones.iter_mut().enumerate() {
-            let [from, to] = [from, to].map(|row| self.vectors.moving(database, row, joint));
+            let [from, to] = [from, to].map(|row| self.reader.moving(row, joint));
             *offset = inertialize_transition(*offset, from, to);
         }
     }
 
     fn append(&self, row: u32, out: &mut LocalPoses) {
-        let database = self.playback.database;
+        let topology = self.reader.topology();
         let root = inertialize_update(self.root, self.root_at(row)).value;
         let heading = DQuat::from_rotation_y(root.y);
         for (slot, &offset) in self.slots.iter().enumerate() {
-            let animation = Turning { rotation: rotation(database, row, slot), velocity: DVec3::ZERO };
+            let animation = Turning { rotation: self.reader.rotation(row, slot), velocity: DVec3::ZERO };
             let local = inertialize_update_rotation(offset, animation).rotation;
-            let under_world = database.topology().slot_parents()[slot] == NONE;
+            let under_world = topology.slot_parents()[slot] == NONE;
             let shown = if under_world { heading * local } else { local };
             out.rotations.extend(shown.normalize().as_quat().to_array());
         }
         for (joint, offset) in self.bones.iter().enumerate() {
-            let local = offset.value + self.vectors.at(database, row, joint);
-            let is_root = database.topology().parents()[joint] == NONE;
+            let local = offset.value + self.reader.vector(row, joint);
+            let is_root = topology.parents()[joint] == NONE;
             let shown = if is_root { DVec3::new(root.x, 0.0, root.z) + heading * local } else { local };
             out.translations.extend(shown.as_vec3().to_array());
         }
@@ -198,61 +199,13 @@ impl<'a> Body<'a> {
     }
 }
 
-/// Where the vector of each joint's bone is found in a row.
-struct BoneVectors {
-    /// Per joint: its number among the translated ones.
-    translated: Vec<Option<usize>>,
-}
-
-impl BoneVectors {
-    fn new(database: &Database) -> Self {
-        let mut translated = vec![None; database.joint_count()];
-        for (number, &joint) in database.translated().iter().enumerate() {
-            translated[joint as usize] = Some(number);
-        }
-        Self { translated }
-    }
-
-    fn at(&self, database: &Database, row: u32, joint: usize) -> DVec3 {
-        let (vectors, number) = match self.translated[joint] {
-            Some(number) => (database.translation_row(row), number),
-            None => (database.offsets(row), joint),
-        };
-        Vec3::from_slice(&vectors[3 * number..]).as_dvec3()
-    }
-
-    fn moving(&self, database: &Database, row: u32, joint: usize) -> Moving<DVec3> {
-        let (before, after, seconds) = neighbours(database, row);
-        let [from, to] = [before, after].map(|row| self.at(database, row, joint));
-        Moving { value: self.at(database, row, joint), velocity: (to - from) / seconds }
-    }
-}
-
-fn turning(database: &Database, row: u32, slot: usize) -> Turning {
-    let (before, after, seconds) = neighbours(database, row);
-    let [from, to] = [before, after].map(|row| rotation(database, row, slot));
-    Turning {
-        rotation: rotation(database, row, slot),
-        velocity: super::inertialization::log(to * from.conjugate()) / seconds,
-    }
-}
-
-fn rotation(database: &Database, row: u32, slot: usize) -> DQuat {
-    Quat::from_slice(&database.rotation_row(row)[4 * slot..]).as_dquat().normalize()
-}
-
-/// The rows before and after `row` in its clip (itself at an end), and the seconds between them, above 0.
-fn neighbours(database: &Database, row: u32) -> (u32, u32, f64) {
-    let clip = database.clip_rows(row);
-    let (before, after) = (row.saturating_sub(1).max(clip.start), (row + 1).min(clip.end - 1));
-    (before, after, f64::from((after - before).max(1)) / database.rate())
-}
-
 /// Why there are no poses.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PlaybackError {
     /// A length that does not fit, or a joint that is not there.
     Job(JobError),
+    /// A skeleton that is no forest once its carriers are roots.
+    Topology(TopologyError),
     /// A row that the database does not have.
     Row {
         /// The step that shows it.
@@ -273,6 +226,7 @@ impl fmt::Display for PlaybackError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Job(error) => error.fmt(f),
+            Self::Topology(error) => error.fmt(f),
             Self::Row { step, row, count } => {
                 write!(f, "step {step} shows row {row}, but the database has {count} rows")
             }
@@ -288,5 +242,11 @@ impl std::error::Error for PlaybackError {}
 impl From<JobError> for PlaybackError {
     fn from(error: JobError) -> Self {
         Self::Job(error)
+    }
+}
+
+impl From<TopologyError> for PlaybackError {
+    fn from(error: TopologyError) -> Self {
+        Self::Topology(error)
     }
 }

@@ -33,49 +33,71 @@ impl Default for Walk {
     }
 }
 
-/// Hips; left foot; right foot; left toe. The feet hang on slots 0 and 1, the toe on slot 2 below the first.
-fn topology() -> Topology {
-    Topology::new(&[-1, 0, 0, 1], &[-1, 0, 1, 2], 3).unwrap()
+/// What the body stands on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Skeleton {
+    /// Hips; left foot; right foot; left toe. The feet hang on slots 0 and 1, the toe on slot 2 below the first.
+    Plain,
+    /// The same below a joint that stands at the origin of each clip's world, turned, and only carries the hips.
+    Carried,
+}
+
+impl Skeleton {
+    fn topology(self) -> Topology {
+        match self {
+            Self::Plain => Topology::new(&[-1, 0, 0, 1], &[-1, 0, 1, 2], 3).unwrap(),
+            Self::Carried => Topology::new(&[-1, 0, 1, 1, 2], &[-1, 0, 1, 2, 3], 4).unwrap(),
+        }
+    }
+
+    /// The joints with a translation in every frame: the last of them are the hips.
+    fn translated(self) -> Vec<i32> {
+        if self == Self::Plain { vec![0] } else { vec![0, 1] }
+    }
+}
+
+/// How the carrier is turned.
+fn carrier() -> DQuat {
+    DQuat::from_rotation_y(0.7)
 }
 
 /// The database of these clips at [`RATE`].
 pub fn database(clips: &[Walk]) -> Database {
-    database_at(RATE, clips)
+    database_at(RATE, Skeleton::Plain, clips)
 }
 
-/// The database of these clips at any rate.
-pub fn database_at(rate: f64, clips: &[Walk]) -> Database {
-    let schema = Schema::locomotion(1, 2, 0, 4).unwrap();
-    let mut builder = DatabaseBuilder::new(topology(), vec![0], schema, rate).unwrap();
-    clips.iter().for_each(|clip| clip.add_to(&mut builder, rate));
+/// The database of these clips at any rate, on either skeleton.
+pub fn database_at(rate: f64, skeleton: Skeleton, clips: &[Walk]) -> Database {
+    let (topology, translated) = (skeleton.topology(), skeleton.translated());
+    let hips = translated.len() - 1;
+    let schema = Schema::locomotion(hips + 1, hips + 2, hips, topology.joint_count()).unwrap();
+    let mut builder = DatabaseBuilder::new(topology, translated, schema, rate).unwrap();
+    clips.iter().for_each(|clip| clip.add_to(&mut builder, rate, skeleton));
     builder.finish(None).unwrap()
 }
 
 impl Walk {
-    fn add_to(&self, builder: &mut DatabaseBuilder, rate: f64) {
+    fn add_to(&self, builder: &mut DatabaseBuilder, rate: f64, skeleton: Skeleton) {
         let (mut positions, mut rotations, mut translations) = (Vec::new(), Vec::new(), Vec::new());
         let mut root = RootTrack::default();
-        let offsets = [[0.0, 0.0, 0.0], [0.1, -self.leg, 0.0], [-0.1, -self.leg, 0.0], [0.0, 0.0, 0.2]];
+        let mut offsets = vec![[0.0; 3], [0.1, -self.leg, 0.0], [-0.1, -self.leg, 0.0], [0.0, 0.0, 0.2]];
         for frame in 0..self.frames {
-            let time = frame as f64 / rate;
-            let place = self.place(time);
-            let turn = DQuat::from_rotation_y(place.heading);
-            let swing = 0.5 * (std::f64::consts::TAU * self.cadence * time).sin();
-            let [left, right] = [swing, -swing].map(|angle| turn * DQuat::from_rotation_x(-angle));
-            let toe = DQuat::from_rotation_x(0.3 * swing);
-            let hips = DVec3::new(place.position.x, self.leg, place.position.y);
-            let foot = hips + left * DVec3::from(offsets[1]);
-            let joints = [
-                hips,
-                foot,
-                hips + right * DVec3::from(offsets[2]),
-                foot + left * (toe * DVec3::from(offsets[3])),
-            ];
-            positions.extend(joints.iter().flat_map(|joint| joint.to_array()).map(|x| x as f32));
-            rotations.extend([left, right, toe].iter().flat_map(|q| q.to_array()));
-            translations.extend(hips.to_array());
-            root.ground.push(place.position.to_array());
-            root.heading.push(place.heading);
+            let pose = self.pose(frame as f64 / rate, &offsets);
+            if skeleton == Skeleton::Carried {
+                positions.extend([0.0; 3]);
+                translations.extend([0.0; 3]);
+                rotations.extend(carrier().to_array());
+            }
+            let above = if skeleton == Skeleton::Carried { carrier().conjugate() } else { DQuat::IDENTITY };
+            positions.extend(pose.joints.iter().flat_map(|joint| joint.to_array()).map(|x| x as f32));
+            translations.extend((above * pose.joints[0]).to_array());
+            rotations
+                .extend([above * pose.left, above * pose.right, pose.toe].iter().flat_map(|q| q.to_array()));
+            root.ground.push(pose.root.position.to_array());
+            root.heading.push(pose.root.heading);
+        }
+        if skeleton == Skeleton::Carried {
+            offsets.insert(0, [0.0; 3]);
         }
         let clip = ClipPoses {
             positions: &positions,
@@ -88,9 +110,30 @@ impl Walk {
         builder.add_clip(&clip).unwrap();
     }
 
-    /// Where its root is, in a world of its own that is no trial's.
-    fn place(&self, time: f64) -> Placement {
+    /// The body in a world of its own that is no trial's.
+    fn pose(&self, time: f64, offsets: &[[f64; 3]]) -> Pose {
         let segment = Segment { duration: 1.0, speed: self.speed, turn_rate: self.turn_rate };
-        arc(Placement::new(4.0, -7.0, 1.0), &segment, time)
+        let root = arc(Placement::new(4.0, -7.0, 1.0), &segment, time);
+        let phase = std::f64::consts::TAU * self.cadence * time;
+        let swing = 0.5 * phase.sin();
+        let turn = DQuat::from_rotation_y(root.heading);
+        let [left, right] = [swing, -swing].map(|angle| turn * DQuat::from_rotation_x(-angle));
+        let toe = DQuat::from_rotation_x(0.3 * swing);
+        // The hips rise and fall twice a cycle, as bodies do: a bone vector that moves.
+        let height = self.leg + 0.04 * (2.0 * phase).cos();
+        let hips = DVec3::new(root.position.x, height, root.position.y);
+        let [left_foot, right_foot] =
+            [(left, 1), (right, 2)].map(|(leg, joint)| hips + leg * DVec3::from(offsets[joint]));
+        let left_toe = left_foot + left * (toe * DVec3::from(offsets[3]));
+        Pose { root, left, right, toe, joints: [hips, left_foot, right_foot, left_toe] }
     }
+}
+
+/// World rotations of the legs, the toe's below its foot's, and the joints' places.
+struct Pose {
+    root: Placement,
+    left: DQuat,
+    right: DQuat,
+    toe: DQuat,
+    joints: [DVec3; 4],
 }
