@@ -167,7 +167,17 @@ def test_straying_from_the_path_fails_only_where_the_path_is_tracked() -> None:
     assert any("(mean distance from the path" in sentence for sentence in timed.sentences)
     free = judged(EVERYTHING, slow, tracking="velocity")
     assert free.headline.startswith("This dataset does what it is asked in all 25 trials")
-    assert not any("of where the planned path has it" in sentence for sentence in free.sentences)
+    assert free.sentences[0] == (
+        "What is asked counts as done when, on average, the character's speed is within 15% of the speed "
+        "asked for, and its turn rate within 10 degrees/s."
+    )
+    assert timed.sentences[0] == (
+        "What is asked counts as done when, on average, the character is within 0.5 m of where the planned "
+        "path has it at that time, its speed is within 15% of the speed asked for, and its turn rate within "
+        "10 degrees/s."
+    )
+    lost = judged(EVERYTHING, lambda speed, turn: Gait(0.5 * speed, turn), tracking="velocity")
+    assert any(text.endswith("the character goes 1 m/s too slowly.") for text in lost.sentences)
 
 
 def test_clips_that_carry_and_clips_never_played_are_named_with_their_mirrored_copies() -> None:

@@ -22,11 +22,11 @@ def failure_sentences(grid: Grid, regions: Sequence[Region]) -> Iterator[str]:
     """Say of the largest regions what is asked there, what the clips have of it, and what goes wrong."""
     told = _worth_telling(grid, regions)
     for region in told:
-        cells = tuple(region.cells.T)
+        away = f" (mean distance from the path {_range(grid.offset[tuple(region.cells.T)])} m)"
         yield (
             f"It fails when {_movement(grid, region)} ({count(len(region.cells), 'trial')}): "
-            f"{_clips_there(grid, region)}, and the character {_symptom(grid, region)} "
-            f"(mean distance from the path {_range(grid.offset[cells])} m)."
+            f"{_clips_there(grid, region)}, and the character {_symptom(grid, region)}"
+            f"{away if grid.timed else ''}."
         )
     others = sum(len(region.cells) for region in regions) - sum(len(region.cells) for region in told)
     if others:

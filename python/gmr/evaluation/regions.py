@@ -59,6 +59,7 @@ class Grid:
         seconds: (V, W) how long the clips go forward at about this speed and turn rate: nearer to it than
             to the next ones of the grid.
         limits: what "holds" means.
+        timed: whether the character was steered to where the path has it at each time.
     """
 
     speeds: NDArray[np.float64]
@@ -69,6 +70,7 @@ class Grid:
     held: NDArray[np.bool_]
     seconds: NDArray[np.float64]
     limits: Limits
+    timed: bool
 
     @classmethod
     def of(cls, trials: Table, coverage: Table, limits: Limits) -> Grid:
@@ -86,10 +88,11 @@ class Grid:
         turn_rate_error = laid_out("turn_rate_error_deg")
         held = np.abs(speed_error) <= limits.speed * speeds[:, None]
         held &= np.abs(turn_rate_error) <= limits.turn_rate_deg
-        if not np.any(trials["tracking"] == "velocity"):
+        timed = not np.any(trials["tracking"] == "velocity")
+        if timed:
             held &= offset <= limits.offset
         seconds = _seconds_in_cells(coverage, speeds, turn_rates)
-        return cls(speeds, turn_rates, offset, speed_error, turn_rate_error, held, seconds, limits)
+        return cls(speeds, turn_rates, offset, speed_error, turn_rate_error, held, seconds, limits, timed)
 
 
 def _seconds_in_cells(

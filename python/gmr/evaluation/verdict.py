@@ -54,7 +54,7 @@ def verdict(
     return Verdict(
         _headline(grid),
         (
-            _what_holds(grid, bool(np.any(trials["tracking"] == "time"))),
+            _what_counts(grid),
             *_straight_sentences(grid),
             *failure_sentences(grid, regions),
             *_side_sentences(coverage, mirrored),
@@ -78,15 +78,15 @@ def _headline(grid: Grid) -> str:
     return f"{DOES} {held} of {count(trials, 'trial')} ({share}); it is good for {where}."
 
 
-def _what_holds(grid: Grid, timed: bool) -> str:
+def _what_counts(grid: Grid) -> str:
     limits = grid.limits
-    within = [
-        f"its speed within {percent(limits.speed)} of the speed asked for",
-        f"its turn rate within {limits.turn_rate_deg:g} degrees/s",
-    ]
-    if timed:
-        within.insert(0, f"within {limits.offset:g} m of where the planned path has it at that time")
-    return f"What is asked counts as done when the character is, on average, {listing(within)}."
+    near = f"the character is within {limits.offset:g} m of where the planned path has it at that time, its"
+    whose = near if grid.timed else "the character's"
+    return (
+        f"What is asked counts as done when, on average, {whose} speed is within "
+        f"{percent(limits.speed)} of the speed asked for, and its turn rate within "
+        f"{limits.turn_rate_deg:g} degrees/s."
+    )
 
 
 def _straight_sentences(grid: Grid) -> Iterator[str]:
