@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import shutil
+import statistics
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +12,8 @@ import pytest
 
 import gmr
 from gmr.evaluation import Evaluation, Table
+from gmr.matching import Database
+from gmr.matching.trial import Profile, run_trials
 from locomotion import Arc
 from walker import walker_bvh, write_walkers
 
@@ -281,3 +285,31 @@ def test_tables_are_written_whole_or_not_at_all(
     assert not (tmp_path / "full").exists()
     with pytest.raises(ValueError, match="unknown table format 'xls'"):
         found.write_tables(tmp_path / "full", ("xls",))
+
+
+def test_a_simulated_trial_agrees_with_loops_that_read_like_the_formulas(
+    folder: Path, found: Evaluation
+) -> None:
+    database = Database.build(gmr.read_folder(folder))
+    log = run_trials(database, [Profile.constant(2.0, math.radians(-50.0))])
+    x, z, heading, row = (getattr(log, name)[0].tolist() for name in ("x", "z", "heading", "row"))
+    steps = range(5 * 60, 35 * 60)
+    speeds = [math.hypot(x[i + 1] - x[i], z[i + 1] - z[i]) * 60 for i in steps]
+    turns = [math.degrees(heading[i + 1] - heading[i]) * 60 for i in steps]
+    offsets = [math.hypot(x[i] - log.ref_x[0, i], z[i] - log.ref_z[0, i]) for i in range(5 * 60, 35 * 60 + 1)]
+    jumps = [(row[i - 1], row[i]) for i in steps if row[i] != row[i - 1] + 1]
+    wanted = {
+        "speed_error": statistics.fmean(speeds) - 2.0,
+        "turn_rate_error_deg": statistics.fmean(turns) + 50.0,
+        "speed_deviation": statistics.pstdev(speeds),
+        "turn_rate_deviation_deg": statistics.pstdev(turns),
+        "offset_mean": statistics.fmean(offsets),
+        "offset_rms": math.sqrt(statistics.fmean(e * e for e in offsets)),
+        "offset_max": max(offsets),
+        "offset_final": offsets[-1],
+        "offset_sum": sum(offsets),
+        "transitions_per_second": len(jumps) / 30,
+    }
+    assert len(jumps) > 10
+    for name, value in wanted.items():
+        assert trial(found, name, 2.0, -50.0) == pytest.approx(value, rel=1e-9), name
