@@ -95,14 +95,27 @@ def test_info_names_every_oddity_of_a_file(tmp_path: Path, capsys: Captured) -> 
     for oddity in (
         "5 frames are declared, but 3 are there",
         "several joints share a name: B",
-        "1 turning leaves have no End Site",
+        "1 turning leaf has no End Site",
         "2 roots: A, C",
         "rotation orders differ between joints: ZXY (1), XYZ (1)",
-        "1 joints have fewer than three rotation channels",
+        "1 joint has fewer than three rotation channels",
         "rotation channels come before position channels",
     ):
         assert oddity in page
     assert run("info", "--strict", odd) == 1
+
+
+def test_many_files_get_a_line_each_and_what_is_odd_about_which(takes: Path, capsys: Captured) -> None:
+    for copy in ("a.bvh", "b.bvh", "c.bvh"):
+        shutil.copy(takes / "walk.bvh", takes / copy)
+    assert run("info", takes) == 1
+    said = capsys.readouterr()
+    assert [line.split()[0] for line in said.out.splitlines()[:6]] == [
+        "file", "a.bvh", "b.bvh", "below/stroll.BVH", "c.bvh", "walk.bvh",
+    ]  # fmt: skip
+    assert f"5 motions in {takes}: 280 frames, 2.3 s" in said.out
+    assert said.out.count("T-pose") == 1
+    assert "broken.bvh" in said.err
 
 
 def test_one_broken_file_is_named_and_the_others_are_converted(

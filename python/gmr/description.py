@@ -89,7 +89,8 @@ def _oddities(motion: Motion, rest: int, up: UpGuess | None) -> list[str]:
     if repeated := [name for name, count in names.items() if count > 1]:
         found.append(f"several joints share a name: {_listed(repeated)}")
     if tips := int((skeleton.ends == End.TIP).sum()):
-        found.append(f"{tips} turning leaves have no End Site; a zero-length tip stands for it")
+        leaves = "1 turning leaf has" if tips == 1 else f"{tips} turning leaves have"
+        found.append(f"{leaves} no End Site; a zero-length tip stands for it")
     if len(motion.roots) > 1:
         found.append(f"{len(motion.roots)} roots: {_listed(motion.roots)}")
     found += _channel_oddities(motion)
@@ -121,7 +122,8 @@ def _channel_oddities(motion: Motion) -> list[str]:
         counted = ", ".join(f"{order} ({count})" for order, count in orders.most_common())
         found.append(f"rotation orders differ between joints: {counted}")
     if few := sum(0 < len(joint) < 3 for joint in turns):
-        found.append(f"{few} joints have fewer than three rotation channels")
+        joints = "1 joint has" if few == 1 else f"{few} joints have"
+        found.append(f"{joints} fewer than three rotation channels")
     if any(_rotates_first(channels) for channels in layout.names):
         found.append("rotation channels come before position channels")
     return found

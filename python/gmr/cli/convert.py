@@ -104,13 +104,16 @@ def convert(
     """
     changes = _Changes(fps, unit, from_unit, drop_dummies, mirror)
     failures = Failures()
+    guessed: dict[str, list[str]] = {}
     with progress(_jobs(source, target), "Converting") as watched:
         for path, out in watched:
             with failures.of(str(path)):
                 motion, warnings = read_noting(path, positions=positions, strict=strict)
                 for warning in warnings:
                     say(warning)
-                _write(_changed(motion, changes), out)
+                _write(_changed(motion, changes, guessed), out)
+    for guess, names in guessed.items():
+        say(f"{_several(names)} taken to be in {guess}; state another unit with --from-unit")
     return failures.exit_code()
 
 
@@ -140,8 +143,8 @@ def _check_suffix(target: str) -> None:
         raise click.UsageError(str(error)) from error
 
 
-def _changed(motion: Motion, changes: _Changes) -> Motion:
-    """The motion after all that was asked for."""
+def _changed(motion: Motion, changes: _Changes, guessed: dict[str, list[str]]) -> Motion:
+    """The motion after all that was asked for; a unit that had to be guessed is noted in ``guessed``."""
     if changes.mirror:
         motion = motion.mirror()
     if changes.drop_dummies:
@@ -149,12 +152,12 @@ def _changed(motion: Motion, changes: _Changes) -> Motion:
     if changes.fps is not None:
         motion = motion.resample(changes.fps)
     if changes.unit is not None:
-        motion = _in_known_unit(motion, changes.from_unit).to_unit(changes.unit)
+        motion = _in_known_unit(motion, changes.from_unit, guessed).to_unit(changes.unit)
     return motion
 
 
-def _in_known_unit(motion: Motion, stated: float | None) -> Motion:
-    """The motion with the unit stated, or guessed and said."""
+def _in_known_unit(motion: Motion, stated: float | None, guessed: dict[str, list[str]]) -> Motion:
+    """The motion with the unit that was stated, or is guessed from the body's height."""
     from gmr.errors import GmrError
     from gmr.guesses import guess_body
 
@@ -165,11 +168,14 @@ def _in_known_unit(motion: Motion, stated: float | None) -> Motion:
     guess = guess_body(motion).unit
     if guess is None:
         raise GmrError(f"{motion.name}: no unit makes this body a human's height; state it with --from-unit")
-    say(
-        f"{motion.name}: taken to be in {guess.name} ({guess.metres:.4g} m), for then the body is "
-        f"{guess.body_metres:.2f} m tall; state another with --from-unit"
-    )
+    said = f"{guess.name} ({guess.metres:.4g} m), in which the body has a human's height"
+    guessed.setdefault(said, []).append(str(motion.name))
     return motion.with_unit(guess.metres)
+
+
+def _several(names: list[str]) -> str:
+    """One name, or a count of several."""
+    return names[0] if len(names) == 1 else f"{len(names)} motions ({names[0]}, ...)"
 
 
 def _write(motion: Motion, out: Path | str) -> None:

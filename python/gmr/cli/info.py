@@ -6,16 +6,20 @@ import json
 import re
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from gmr.cli.common import STDIO, Failures, files_of, progress, read_noting
+from gmr.cli.common import Failures, files_of, progress, read_noting
+from gmr.cli.pages import overview, page
 
 if TYPE_CHECKING:
     from gmr.description import Description
 
 __all__ = ["info"]
+
+FEW: Final = 3
+"""Files that get a page each; more get a line each."""
 
 
 @click.command(short_help="What is in a file, and what is odd about it.")
@@ -35,7 +39,7 @@ def info(files: tuple[str, ...], as_json: bool, strict: bool, positions: str) ->
     \b
     Examples:
       gmr info walk.bvh
-      gmr info takes/                       a few lines for each
+      gmr info takes/                       a line for each, and what is odd about which
       gmr info --json takes/ | jq '.[] | select(.oddities != []) | .file'
       cat walk.bvh | gmr info -
     """
@@ -44,20 +48,26 @@ def info(files: tuple[str, ...], as_json: bool, strict: bool, positions: str) ->
     for file in files:
         with failures.of(file):
             paths += files_of(file)
-    found: list[dict[str, Any]] = []
+    found: dict[str, Description] = {}
     with progress(paths, "Reading") as watched:
         for path in watched:
             with failures.of(str(path)):
-                description = _described(path, strict=strict, positions=positions)
-                if as_json:
-                    found.append({"file": str(path), **_plain(description)})
-                else:
-                    click.echo(_page(str(path), description))
+                found[str(path)] = _described(path, strict=strict, positions=positions)
     if as_json:
-        found += [{"file": file, "error": error} for file, error in failures.errors.items()]
-        alone = len(files) == 1 and len(found) == 1 and (files[0] == STDIO or not Path(files[0]).is_dir())
-        click.echo(json.dumps(found[0] if alone else found, indent=2, allow_nan=False))
+        alone = len(files) == 1 and not Path(files[0]).is_dir()
+        click.echo(_as_json(found, failures.errors, alone))
+    elif len(found) > FEW:
+        click.echo(overview(found))
+    elif found:
+        click.echo("\n\n".join(page(path, description) for path, description in found.items()))
     return failures.exit_code()
+
+
+def _as_json(found: dict[str, Description], errors: dict[str, str], alone: bool) -> str:
+    """All that was found and what failed, as JSON."""
+    entries = [{"file": path, **_plain(description)} for path, description in found.items()]
+    entries += [{"file": path, "error": error} for path, error in errors.items()]
+    return json.dumps(entries[0] if alone else entries, indent=2, allow_nan=False)
 
 
 def _described(path: Path | str, **options: Any) -> Description:
@@ -77,72 +87,3 @@ def _plain(description: Description) -> dict[str, Any]:
     plain = asdict(description)
     plain["joint_count"] = len(description.joints)
     return plain
-
-
-def _page(path: str, of: Description) -> str:
-    """The description for people: a line for each thing, oddities last."""
-    lines = [
-        ("frames", _frames(of)),
-        ("joints", _joints(of)),
-        ("roots", ", ".join(of.roots) or "none"),
-        ("dummies", ", ".join(of.dummies) or "none"),
-        ("channels", f"{of.channels} a frame: {_channels(of)}"),
-        ("moving", f"position channels below the root: {_few(of.moving)}" if of.moving else ""),
-        ("size", _size(of)),
-        ("up", _up(of)),
-        *(("odd", oddity) for oddity in of.oddities),
-    ]
-    body = "\n".join(f"  {key:<9} {text}" for key, text in lines if text)
-    return f"{click.style(path, bold=True)}\n{body}\n"
-
-
-def _frames(of: Description) -> str:
-    if not of.fps:
-        return f"{of.frames:,}, without a rate"
-    return f"{of.frames:,} at {of.fps:.6g} fps: {of.seconds:.2f} s"
-
-
-def _joints(of: Description) -> str:
-    ends = f", {of.ends} of them end sites" if of.ends else ""
-    return f"{len(of.joints)}{ends}"
-
-
-def _channels(of: Description) -> str:
-    counted = [f"{_short(order)} ({count})" for order, count in of.orders.items()]
-    return _few(counted, 4) if counted else "none"
-
-
-def _short(order: str) -> str:
-    """ "Xposition Yposition Zrotation" as "XY positions, Z rotations"."""
-    parts: list[tuple[str, str]] = []
-    for channel in order.split():
-        kind = channel[1:].lower()
-        if parts and parts[-1][1] == kind:
-            parts[-1] = (parts[-1][0] + channel[0], kind)
-        else:
-            parts.append((channel[0], kind))
-    return " ".join(f"{axes} {kind}" for axes, kind in parts)
-
-
-def _size(of: Description) -> str:
-    if of.height is None:
-        return "unknown: no frames"
-    tall = f"{of.height:.4g} file units tall"
-    if of.unit is not None:
-        return f"{tall}, {of.height * of.unit:.2f} m"
-    if of.unit_guess is None:
-        return f"{tall}; no unit makes that a human's height"
-    guess = of.unit_guess
-    return f"{tall}; {guess.body_metres:.2f} m if the unit is {guess.name} ({guess.metres:.4g} m): a guess"
-
-
-def _up(of: Description) -> str:
-    if of.up_guess is None:
-        return ""
-    reason = "from feet to head" if of.up_guess.sure else "the body's longest side: a weak guess"
-    return f"{of.up_guess.axis}, {reason}"
-
-
-def _few(names: tuple[str, ...] | list[str], limit: int = 6) -> str:
-    shown = ", ".join(names[:limit])
-    return shown if len(names) <= limit else f"{shown} and {len(names) - limit} more"
