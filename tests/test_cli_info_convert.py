@@ -233,6 +233,17 @@ def test_a_reader_that_goes_away_ends_it_quietly(walk_path: Path) -> None:
         assert running.wait(60) == 1
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+def test_a_full_standard_output_is_one_sentence(walk_path: Path) -> None:
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "gmr", "convert", str(walk_path), "-"],
+            stdout=full, stderr=subprocess.PIPE, timeout=60, check=False,
+        )  # fmt: skip
+    assert done.returncode == 1
+    assert done.stderr == b"gmr: standard output: No space left on device\n"
+
+
 def test_an_interrupt_is_one_sentence(tmp_path: Path) -> None:
     with subprocess.Popen(
         [sys.executable, "-m", "gmr", "convert", "-", str(tmp_path / "out.bvh")],

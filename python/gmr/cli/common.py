@@ -43,6 +43,9 @@ def finished(command: click.Command, args: list[str] | None = None) -> int:
     except GmrError as error:
         say(str(error))
         return 1
+    except OSError as error:
+        say(f"{error.filename or 'standard output'}: {error.strerror}")
+        return 1
     return code if isinstance(code, int) else 0
 
 
