@@ -88,3 +88,20 @@ def test_repr_tells_name_length_and_unit() -> None:
     assert repr(walker()) == (
         "Motion('walk.bvh', 5 frames at 60 fps = 0.083 s, 4 joints, roots: Hips, unit 0.01 m)"
     )
+
+
+def test_every_public_name_is_there_whatever_was_imported_before() -> None:
+    import importlib
+    import pkgutil
+    import types
+
+    import gmr
+
+    for module in pkgutil.iter_modules(gmr.__path__):
+        if module.name != "__main__":
+            importlib.import_module(f"gmr.{module.name}")
+    for name in gmr.__all__:
+        is_module = isinstance(getattr(gmr, name), types.ModuleType)
+        assert is_module == (name in {"evaluation", "matching"}), name
+    with pytest.raises(AttributeError, match="no attribute 'walk'"):
+        gmr.walk  # noqa: B018

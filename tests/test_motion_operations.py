@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from gmr import GmrError, Motion, Skeleton, SkeletonError
-from gmr.concatenate import concatenate
+from gmr.concatenation import concatenate
 from gmr.dummies import find_dummies
 from gmr.sides import pair_joints
 from strategies import motions, poses, symmetric_motions

@@ -18,7 +18,7 @@ from gmr.errors import (
 if TYPE_CHECKING:
     from gmr import evaluation, matching
     from gmr.channels import ChannelLayout
-    from gmr.concatenate import concatenate
+    from gmr.concatenation import concatenate
     from gmr.evaluation.evaluate import evaluate
     from gmr.evaluation.result import Evaluation
     from gmr.formats import read, read_folder, write
@@ -52,7 +52,7 @@ _HOMES = {
     "Evaluation": "gmr.evaluation.result",
     "Motion": "gmr.motion",
     "Skeleton": "gmr.skeleton",
-    "concatenate": "gmr.concatenate",
+    "concatenate": "gmr.concatenation",
     "evaluate": "gmr.evaluation.evaluate",
     "read": "gmr.formats",
     "read_folder": "gmr.formats",
