@@ -53,7 +53,7 @@ def test_no_file_in_the_folder_is_left_out() -> None:
 
 @needs_files
 def test_a_row_beyond_the_declared_count_is_said() -> None:
-    with pytest.warns(FormatWarning, match="3,069 frames are declared and read, but 3,070 rows are there"):
+    with pytest.warns(FormatWarning, match="3,069 frames are declared, but 3,070 rows are there"):
         read_bvh((FOLDER / "boxing_toes.bvh").read_bytes())
 
 

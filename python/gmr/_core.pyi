@@ -177,7 +177,7 @@ class Database:
 
 def parse_rows(
     data: bytes, start: int, columns: int, limit: int
-) -> tuple[NDArray[np.float64], int, tuple[str, int, int, int, int, int] | None]:
+) -> tuple[NDArray[np.float64], int, tuple[str, int, int, int, int] | None]:
     """Rows of numbers from text, one row a line, each value the nearest float64.
 
     Args:
@@ -189,11 +189,11 @@ def parse_rows(
     Returns:
         The rows, (F, columns); the byte after the last whole row; what ended the reading early, if anything:
         "not a number", "overflow", "row too short", "row too long" or "cut" (the text ends inside the row),
-        its row and value from 0, its line from 1, the bytes from and to which the token reaches.
+        its row and value from 0, the bytes from and to which the token reaches.
     """
 
 def count_rows(data: bytes, start: int) -> int:
-    """Number of lines from byte ``start`` on that hold more than blanks and NUL bytes."""
+    """Number of lines from byte ``start`` on that hold more than blanks and padding."""
 
 def format_rows(rows: NDArray[np.float64]) -> bytes:
     """Text of (F, C) C-contiguous rows, one line each: the shortest decimals that read back bit-identical.

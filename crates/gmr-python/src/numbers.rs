@@ -6,8 +6,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-/// Kind, row and field from 0, line from 1, first byte and the byte after the token.
-type FaultTuple = (&'static str, usize, usize, usize, usize, usize);
+/// Kind, row and field from 0, first byte and the byte after the token.
+type FaultTuple = (&'static str, usize, usize, usize, usize);
 
 /// Rows, the byte after the last whole one, and what ended the reading early.
 type RowsTuple<'py> = (Bound<'py, PyArray2<f64>>, usize, Option<FaultTuple>);
@@ -31,9 +31,9 @@ fn parse_rows<'py>(
         py.detach(|| job.run(out)).map_err(|error| PyValueError::new_err(error.to_string()))?
     };
     let rows = if read.rows == room { rows } else { first_rows(&rows, read.rows)? };
-    let fault = read.fault.map(|fault| {
-        (fault.flaw.name(), fault.row, fault.field, fault.line(text), fault.token.start, fault.token.end)
-    });
+    let fault = read
+        .fault
+        .map(|fault| (fault.flaw.name(), fault.row, fault.field, fault.token.start, fault.token.end));
     Ok((rows, read.end, fault))
 }
 
@@ -46,7 +46,7 @@ fn first_rows<'py>(rows: &Bound<'py, PyArray2<f64>>, count: usize) -> PyResult<B
     Ok(kept)
 }
 
-/// Number of lines of `data[start:]` that hold more than blanks and NUL bytes.
+/// Number of lines of `data[start:]` that hold more than blanks and padding.
 #[pyfunction(name = "count_rows")]
 fn count_lines(py: Python<'_>, data: &Bound<'_, PyBytes>, start: usize) -> usize {
     let text = data.as_bytes();

@@ -26,17 +26,18 @@ def read_rows(text: Text, shape: Shape, declared: int) -> NDArray[np.float64]:
     rows, end, found = _core.parse_rows(text.data, text.at, columns, min(declared, len(text.data)))
     rows.flags.writeable = False
     fault = _Fault(*found) if found else None
+    plural = " is" if declared == 1 else "s are"
     if fault and fault.kind != "cut":
         raise _failure(text, shape, fault)
     if fault:
         what = f"the file ends inside frame {fault.row}, after {fault.field} of its {columns} numbers"
         text.odd(f"{what}; the frame is left out. Export the file again for the rest.", at=fault.start)
     elif len(rows) < declared:
-        what = f"{declared:,} frames are declared, but {len(rows):,} are there"
+        what = f"{declared:,} frame{plural} declared, but {len(rows):,} are there"
         text.odd(f"{what}. Correct the count after 'Frames:', or export the file again.")
     elif more := _core.count_rows(text.data, end):
-        what = f"{declared:,} frames are declared and read, but {declared + more:,} rows are there"
-        text.odd(f"{what}. Correct the count after 'Frames:' to read them all.")
+        what = f"{declared:,} frame{plural} declared, but {declared + more:,} rows are there"
+        text.odd(f"{what}. The last are left out; correct the count after 'Frames:' to read them.")
     return rows
 
 
@@ -46,7 +47,6 @@ class _Fault(NamedTuple):
     kind: str
     row: int
     field: int
-    line: int
     start: int
     end: int
 

@@ -4,7 +4,8 @@
 //! - [`FormatRows`]: values to text, each as the shortest decimal that reads back bit-identical.
 //!
 //! A token ends at any byte up to `' '`; blanks are space, tab, vertical tab and form feed; a line ends at `\n`, `\r`
-//! or both; lines without a token count for nothing. What is no finite decimal number is a [`Fault`].
+//! or both. Lines without a token count for nothing, nor do NUL bytes and end-of-file marks after the last row. What is
+//! no finite decimal number is a [`Fault`].
 
 mod fault;
 mod format;

@@ -100,10 +100,10 @@ pub(super) fn rows(
     RowsRead { rows: out.len() / job.columns, end, fault: None }
 }
 
-/// Number of lines from `start` on that hold more than blanks and NUL bytes.
+/// Number of lines from `start` on that hold more than blanks and padding.
 #[must_use]
 pub fn count_rows(text: &[u8], start: usize) -> usize {
-    let empty = |byte: &u8| is_blank(*byte) || *byte == 0;
+    let empty = |byte: &u8| is_blank(*byte) || PADDING.contains(byte);
     let rest = text.get(start..).unwrap_or_default();
     rest.split(|&byte| is_line_end(byte)).filter(|line| !line.iter().all(empty)).count()
 }
@@ -116,7 +116,7 @@ fn skip_blanks(text: &[u8], mut at: usize) -> usize {
     at
 }
 
-/// The next token after any number of blank lines; the end of the text where only NUL bytes are left.
+/// The next token after any number of blank lines; the end of the text where only padding is left.
 #[inline(always)]
 fn row_start(text: &[u8], mut at: usize) -> usize {
     while text.get(at).is_some_and(|&byte| is_blank(byte) || is_line_end(byte)) {
@@ -125,11 +125,18 @@ fn row_start(text: &[u8], mut at: usize) -> usize {
     if is_padding(text, at) { text.len() } else { at }
 }
 
-/// Whether `at` begins the NUL bytes with which some programs fill up a file's last block.
+/// NUL, with which some programs fill up a file's last block, and the end-of-file mark of old systems.
+const PADDING: [u8; 2] = [0, 0x1a];
+
+/// Whether only padding is left from `at` on.
 #[inline(always)]
 fn is_padding(text: &[u8], at: usize) -> bool {
-    text.get(at) == Some(&0)
-        && text[at..].iter().all(|&byte| byte == 0 || is_blank(byte) || is_line_end(byte))
+    text.get(at).is_some_and(|byte| PADDING.contains(byte)) && all_padding(&text[at..])
+}
+
+#[cold]
+fn all_padding(rest: &[u8]) -> bool {
+    rest.iter().all(|&byte| PADDING.contains(&byte) || is_blank(byte) || is_line_end(byte))
 }
 
 fn line_end(text: &[u8], at: usize) -> usize {
