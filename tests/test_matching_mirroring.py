@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from gmr import _core
 from gmr.errors import DatasetError
 from gmr.matching import Database
 from gmr.motion import Motion
 from gmr.quaternions import conjugate, from_matrix, matrices, multiply
 from gmr.skeleton import Skeleton
+from kept_poses import shown
 from walkers import walker
 
 
@@ -63,18 +63,6 @@ def test_images_keep_the_frames_of_the_originals_and_the_places_of_the_mirror(ri
     )
     apart = angles(mean_rotations(database, original), mean_rotations(database, image))
     assert apart.max() < np.radians(20), apart
-
-
-def shown(database: Database, rows: slice) -> NDArray[np.float32]:
-    """(F, J, 3) positions that forward kinematics makes of the rotations kept for playback."""
-    core, topology = database.core, database.skeleton.topology
-    positions = np.empty_like(database.positions[rows])
-    _core.forward_kinematics(
-        topology, np.ascontiguousarray(core.rotations[rows]), np.array(core.translated, np.int32),
-        np.ascontiguousarray(core.translations[rows]), core.offsets(rows.start), None,
-        np.empty(0, np.int32), positions,
-    )  # fmt: skip
-    return positions
 
 
 def mean_rotations(database: Database, rows: slice) -> NDArray[np.float64]:

@@ -13,6 +13,7 @@ from gmr.matching import Database
 from gmr.motion import Motion
 from gmr.quaternions import conjugate, multiply
 from gmr.skeleton import Skeleton
+from kept_poses import shown
 from walkers import about_y, arc, body, walker
 
 speeds = st.floats(-3.0, 5.0)
@@ -90,6 +91,17 @@ def test_a_root_joint_that_rests_at_the_origin_is_no_simulation_root() -> None:
     database = Database.build([with_root_joint(moves=False)])
     assert not any("'Reference'" in note for note in database.notes)
     np.testing.assert_allclose(np.hypot(*database.displacements.T) * 60, 1.2, rtol=0.02)
+
+
+def test_a_joint_that_the_body_walks_away_from_is_carried_along() -> None:
+    """Else its metres would count as pose, and blending two clips would fling the body about."""
+    plain = Database.build([walker(4.0, 1.2, 0.5)], mirror=True)
+    database = Database.build([with_root_joint(moves=False)], mirror=True)
+    np.testing.assert_allclose(database.positions[:, 0], 0.0, atol=1e-6)
+    np.testing.assert_allclose(database.positions[:, 1:], plain.positions, atol=1e-5)
+    np.testing.assert_allclose(np.abs(database.core.rotations[:, 0, 3]), 1.0, atol=1e-6)
+    for rows in (database.clip_rows(0), database.clip_rows(1)):
+        np.testing.assert_allclose(shown(database, rows), database.positions[rows], atol=1e-5)
 
 
 def test_a_body_without_width_has_no_facing() -> None:

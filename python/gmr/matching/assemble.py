@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from gmr import _core
 from gmr.errors import DatasetError, GmrError, SkeletonError
 from gmr.matching.mirroring import Mirror, find_mirror
+from gmr.matching.posed import Posed, posed, translated_joints
 from gmr.matching.prepare import in_metres_upright
-from gmr.matching.root import RootTrack, root_track
 from gmr.matching.schema import Schema
 from gmr.matching.survey import Survey
 from gmr.motion import Motion
+from gmr.sides import pair_joints
 
 __all__ = ["Assembly", "Tags", "assemble"]
 
@@ -36,15 +37,7 @@ class Take:
     """A clip in metres, Y up, at the database's rate, as the core takes it."""
 
     name: str
-    positions: NDArray[np.float32]
-    """(F, J, 3) world positions."""
-    rotations: NDArray[np.float64]
-    """(F, S, 4) local rotations."""
-    translations: NDArray[np.float64]
-    """(F, T, 3) of the joints that any clip translates."""
-    offsets: NDArray[np.float64]
-    """(J, 3) of its skeleton."""
-    root: RootTrack
+    clip: Posed
     tags: NDArray[np.uint32] | None
     """(F,) bits; None: all clear."""
     start: float
@@ -56,11 +49,7 @@ class Take:
         return replace(
             self,
             name=f"{self.name} (mirrored)",
-            positions=mirror.positions(self.positions),
-            rotations=mirror.rotations(self.rotations),
-            translations=mirror.translations(self.translations, translated),
-            offsets=mirror.offsets(self.offsets),
-            root=self.root.mirrored(),
+            clip=mirror.image(self.clip, translated),
             mirrored=True,
         )
 
@@ -81,8 +70,9 @@ class Assembly:
         Raises:
             ValueError: it holds numbers that are not finite.
         """
-        pose = (take.positions, take.rotations, take.translations, take.offsets)
-        self.builder.add_clip(*pose, take.root.ground, take.root.heading, take.tags)
+        clip = take.clip
+        pose = (clip.positions, clip.rotations, clip.translations, clip.offsets)
+        self.builder.add_clip(*pose, clip.root.ground, clip.root.heading, take.tags)
         self.clip_names.append(take.name)
         self.mirrored.append(take.mirrored)
         self.starts.append(take.start)
@@ -104,10 +94,9 @@ def assemble(
         DatasetError: no clip is left, tags fit no clip, or the schema asks for a joint that is not there.
     """
     _check_tags(seen, tags or {})
-    image = _mirror(seen, pairs) if mirror else None
-    translated = np.unique(np.concatenate([motion.translated for motion in seen.motions.values()]))
-    if image is not None:
-        translated = np.union1d(translated, image.pair[translated])
+    pair = _pairs(seen, pairs) if mirror else None
+    translated = translated_joints(seen, pair)
+    image = None if pair is None else _mirror(seen, pair, translated)
     groups = schema.resolve(seen.skeleton, seen.joints.roles, rate)
     try:
         builder = _core.DatabaseBuilder(seen.skeleton.topology, translated.tolist(), groups, rate)
@@ -128,20 +117,27 @@ def assemble(
     return assembly
 
 
-def _mirror(seen: Survey, pairs: Mapping[str, str] | None) -> Mirror:
-    """How the dataset's clips are mirrored.
+def _pairs(seen: Survey, pairs: Mapping[str, str] | None) -> NDArray[np.int32]:
+    """(J,) the mirror image of each joint.
 
     Raises:
         DatasetError: a joint of one side has no partner on the other.
     """
-    names = list(seen.samples)[:: max(1, len(seen.samples) // _MIRROR_SAMPLES)]
-    clips = [in_metres_upright(seen.samples[name], seen.units[name], seen.up) for name in names]
     try:
-        return find_mirror(seen.skeleton, clips, seen.joints.across[0], pairs)
+        return pair_joints(seen.skeleton, pairs)
     except SkeletonError as error:
         raise DatasetError(
             f"the clips cannot be mirrored: {error} Or build without mirrored copies."
         ) from error
+
+
+def _mirror(seen: Survey, pair: NDArray[np.int32], translated: NDArray[np.int32]) -> Mirror:
+    """How the dataset's clips are mirrored."""
+    names = list(seen.samples)[:: max(1, len(seen.samples) // _MIRROR_SAMPLES)]
+    motions = (in_metres_upright(seen.samples[name], seen.units[name], seen.up) for name in names)
+    return find_mirror(
+        seen.skeleton, pair, [posed(seen, motion, translated) for motion in motions], translated
+    )
 
 
 def _take(
@@ -155,23 +151,10 @@ def _take(
     """
     motion, skipped = seen.motions[name], seen.skipped.get(name, 0)
     prepared = in_metres_upright(motion, seen.units[name], seen.up).resample(rate)
-    positions = prepared.positions(dtype=np.float32)
-    translations = _translations(prepared, translated)
-    if seen.floor:
-        roots = np.isin(translated, seen.skeleton.roots)
-        positions[:, :, 1] -= seen.floor
-        translations = translations - roots[:, None] * [0.0, seen.floor, 0.0]
-    _check_speed(positions[:, seen.joints["hips"]], rate)
-    return Take(
-        name=name,
-        positions=positions,
-        rotations=prepared.rotations,
-        translations=translations,
-        offsets=prepared.skeleton.offsets,
-        root=root_track(prepared, positions, seen.joints, seen.root),
-        tags=None if tags is None else _bits(np.asarray(tags, np.uint32), motion, prepared, skipped),
-        start=skipped * motion.frame_time,
-    )
+    clip = posed(seen, prepared, translated)
+    _check_speed(clip.positions[:, seen.joints["hips"]], rate)
+    bits = None if tags is None else _bits(np.asarray(tags, np.uint32), motion, prepared, skipped)
+    return Take(name, clip, bits, skipped * motion.frame_time)
 
 
 def _check_speed(hips: NDArray[np.float32], rate: float) -> None:
@@ -183,16 +166,6 @@ def _check_speed(hips: NDArray[np.float32], rate: float) -> None:
             f"its hips jump {steps[worst]:.2f} m within a frame, {worst / rate:.2f} s after its beginning; "
             "cut the recording there"
         )
-
-
-def _translations(motion: Motion, joints: NDArray[np.int32]) -> NDArray[np.float64]:
-    """(F, T, 3) of the joints that any clip translates; where this one does not, its offsets."""
-    if np.array_equal(motion.translated, joints):
-        return motion.translations
-    found = np.empty((motion.frame_count, len(joints), 3))
-    found[:] = motion.skeleton.offsets[joints]
-    found[:, np.searchsorted(joints, motion.translated)] = motion.translations
-    return found
 
 
 def _bits(tags: NDArray[np.uint32], motion: Motion, prepared: Motion, skipped: int) -> NDArray[np.uint32]:

@@ -8,16 +8,15 @@ the frames that its originals use: `C^-1 S R S C`, with one constant `C` a slot,
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations, product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.motion import Motion
+from gmr.matching.posed import Posed
 from gmr.quaternions import conjugate, from_matrix, matrices, multiply
-from gmr.sides import pair_joints
 from gmr.skeleton import Skeleton
 
 __all__ = ["Mirror", "find_mirror"]
@@ -46,25 +45,17 @@ class Mirror:
     vectors: NDArray[np.float64]
     """(J, 3, 3) rows: what each component of the other side's bone vector adds to that of a joint."""
 
-    def positions(self, positions: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Images of (F, J, 3) world positions."""
-        return np.ascontiguousarray(positions[:, self.pair] * _POINT.astype(np.float32))
-
-    def rotations(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Images of (F, S, 4) local rotations."""
-        return _each(rotations[:, self.slots], self.turns)
-
-    def offsets(self, offsets: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Images of (J, 3) offsets."""
-        return _each(offsets[None, self.pair], self.vectors).reshape(offsets.shape)
-
-    def translations(
-        self, translations: NDArray[np.float64], joints: NDArray[np.int32]
-    ) -> NDArray[np.float64]:
-        """Images of (F, T, 3) translations of T joints, which hold the other side of each of them."""
-        place = {joint: k for k, joint in enumerate(joints.tolist())}
-        others = [place[joint] for joint in self.pair[joints].tolist()]
-        return _each(translations[:, others], self.vectors[joints])
+    def image(self, clip: Posed, translated: NDArray[np.int32]) -> Posed:
+        """A clip seen in the mirror; ``translated`` (T,) holds the other side of each of its joints."""
+        place = {joint: k for k, joint in enumerate(translated.tolist())}
+        others = [place[joint] for joint in self.pair[translated].tolist()]
+        return Posed(
+            positions=np.ascontiguousarray(clip.positions[:, self.pair] * _POINT.astype(np.float32)),
+            rotations=_each(clip.rotations[:, self.slots], self.turns),
+            translations=_each(clip.translations[:, others], self.vectors[translated]),
+            offsets=_each(clip.offsets[None, self.pair], self.vectors).reshape(clip.offsets.shape),
+            root=clip.root.mirrored(),
+        )
 
 
 def _each(values: NDArray[np.float64], maps: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -73,25 +64,18 @@ def _each(values: NDArray[np.float64], maps: NDArray[np.float64]) -> NDArray[np.
 
 
 def find_mirror(
-    skeleton: Skeleton,
-    clips: Sequence[Motion],
-    across: tuple[int, int],
-    pairs: Mapping[str, str] | None = None,
+    skeleton: Skeleton, pair: NDArray[np.int32], clips: Sequence[Posed], translated: NDArray[np.int32]
 ) -> Mirror:
     """How clips of a skeleton are mirrored.
 
     Args:
         skeleton: J joints, S slots.
-        clips: some poses of each clip, Y up.
-        across: a left and a right joint that tell the facing.
-        pairs: names of joints of the two sides, where their names do not tell.
-
-    Raises:
-        SkeletonError: a joint of one side has no partner on the other.
+        pair: (J,) the joint of the other side, itself in the middle.
+        clips: some poses of each clip.
+        translated: (T,) the joints that the clips' translations are of.
     """
-    pair = pair_joints(skeleton, pairs)
     slots = _paired_slots(skeleton, pair)
-    frames = _frames(skeleton, clips, slots, pair, across)
+    frames = _frames(skeleton, clips, slots, pair, translated)
     turns = _turns(skeleton, frames)
     bones = np.where((skeleton.slots >= 0)[:, None, None], frames[skeleton.slots], np.eye(3))
     vectors = bones * _POINT[:, None]
@@ -119,10 +103,10 @@ def _paired_slots(skeleton: Skeleton, pair: NDArray[np.int32]) -> NDArray[np.int
 
 def _frames(
     skeleton: Skeleton,
-    clips: Sequence[Motion],
+    clips: Sequence[Posed],
     slots: NDArray[np.intp],
     pair: NDArray[np.int32],
-    across: tuple[int, int],
+    translated: NDArray[np.int32],
 ) -> NDArray[np.float64]:
     """(S, 3, 3) `C`: the frame of each slot's originals as seen from the frame of its images.
 
@@ -130,8 +114,8 @@ def _frames(
     images (Wahba's problem, solved by Kabsch's singular value decomposition), and the mean pose into the
     mean image.
     """
-    bones = np.asarray(np.mean([_bone_vectors(clip) for clip in clips], axis=0), np.float64)
-    poses = np.concatenate([_world_frames(clip, across) for clip in clips])
+    bones = np.asarray(np.mean([_bone_vectors(clip, translated) for clip in clips], axis=0), np.float64)
+    poses = np.concatenate([_character_frames(skeleton, clip) for clip in clips])
     images = poses[:, slots] * np.outer(_POINT, _POINT)
     found = np.tile(np.eye(3), (skeleton.slot_count, 1, 1))
     for slot in range(skeleton.slot_count):
@@ -146,25 +130,33 @@ def _frames(
     return found
 
 
-def _bone_vectors(clip: Motion) -> NDArray[np.float64]:
+def _bone_vectors(clip: Posed, translated: NDArray[np.int32]) -> NDArray[np.float64]:
     """(J, 3) mean bone vectors in the frames of their slots."""
-    vectors = clip.skeleton.offsets.copy()
-    vectors[clip.translated] = clip.translations.mean(axis=0)
+    vectors = clip.offsets.copy()
+    vectors[translated] = clip.translations.mean(axis=0)
     return vectors
 
 
-def _world_frames(clip: Motion, across: tuple[int, int]) -> NDArray[np.float64]:
-    """(F, S, 3, 3) world rotations of the slots, turned so that the body faces +Z."""
-    skeleton = clip.skeleton
-    frames = np.tile(np.eye(3), (clip.frame_count, skeleton.slot_count, 1, 1))
-    turned = np.flatnonzero(skeleton.slots >= 0)
-    frames[:, skeleton.slots[turned]] = matrices(clip.bone_rotations(dtype=np.float64)[:, turned])
-    positions = clip.positions(dtype=np.float64)
-    left = positions[:, across[0]] - positions[:, across[1]]
-    left = left[:, [0, 2]] / np.linalg.norm(left[:, [0, 2]], axis=1, keepdims=True).clip(1e-9)
-    cos, sin, zero, one = left[:, 0], -left[:, 1], np.zeros(len(left)), np.ones(len(left))
-    facing = np.array([[cos, zero, -sin], [zero, one, zero], [sin, zero, cos]]).transpose(2, 0, 1)
-    return np.asarray(np.einsum("fab,fsbc->fsac", facing, frames), np.float64)
+def _character_frames(skeleton: Skeleton, clip: Posed) -> NDArray[np.float64]:
+    """(F, S, 3, 3) rotations of the slots, seen from the simulation root."""
+    above = skeleton.topology.slot_parents
+    frames = matrices(clip.rotations)
+    cos, sin = np.cos(clip.root.heading), np.sin(clip.root.heading)
+    zero, one = np.zeros_like(cos), np.ones_like(cos)
+    away = np.array([[cos, zero, -sin], [zero, one, zero], [sin, zero, cos]]).transpose(2, 0, 1)
+    for slot in _uppermost_first(above):
+        frames[:, slot] = (away if above[slot] < 0 else frames[:, above[slot]]) @ frames[:, slot]
+    return frames
+
+
+def _uppermost_first(above: NDArray[np.int32]) -> list[int]:
+    """The slots, each after the slot above it."""
+    depth = np.zeros(len(above), int)
+    for slot, parent in enumerate(above.tolist()):
+        while parent >= 0:
+            depth[slot] += 1
+            parent = int(above[parent])
+    return [int(slot) for slot in np.argsort(depth, kind="stable")]
 
 
 def _nearest_rotation(matrix: NDArray[np.float64]) -> NDArray[np.float64]:

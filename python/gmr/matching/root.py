@@ -16,7 +16,15 @@ from gmr.motion import Motion
 from gmr.quaternions import matrices
 from gmr.skeleton import Skeleton
 
-__all__ = ["HEADING_WINDOW", "POSITION_WINDOW", "RootJoint", "RootTrack", "find_root_joint", "root_track"]
+__all__ = [
+    "HEADING_WINDOW",
+    "POSITION_WINDOW",
+    "RootJoint",
+    "RootTrack",
+    "find_root_joint",
+    "joints_left_behind",
+    "root_track",
+]
 
 POSITION_WINDOW = 0.5
 """Seconds of hip positions that a smoothed position is fitted to."""
@@ -107,6 +115,21 @@ def find_root_joint(
     return None
 
 
+def joints_left_behind(skeleton: Skeleton, joints: Joints, poses: Sequence[Poses]) -> tuple[int, ...]:
+    """The joints above the hips from which the body walks away, and all above them; the uppermost first.
+
+    Args:
+        skeleton: whose joints they are.
+        joints: the body's joints.
+        poses: world positions of some frames of each clip, metres, Y up.
+    """
+    above = [joint for joint, _ in _joints_above(skeleton, joints["hips"])]
+    behind = [
+        any(_distance(clip, joint, joints["hips"]).max() > _NEAR_BODY for clip in poses) for joint in above
+    ]
+    return tuple(above[behind.index(True) :][::-1]) if any(behind) else ()
+
+
 def _joints_above(skeleton: Skeleton, hips: int) -> list[tuple[int, int]]:
     """Ancestors of the hips, each with its child on the way down, the nearest first."""
     found, child = [], hips
@@ -118,8 +141,13 @@ def _joints_above(skeleton: Skeleton, hips: int) -> list[tuple[int, int]]:
 
 def _goes_along(positions: Poses, joint: int, hips: int) -> bool:
     lowest = positions[:, :, 1].min(axis=1)
-    apart = np.linalg.norm(positions[:, joint, ::2] - positions[:, hips, ::2], axis=1)
-    return bool(np.all(positions[:, joint, 1] - lowest < _NEAR_GROUND) and np.all(apart < _NEAR_BODY))
+    near = _distance(positions, joint, hips) < _NEAR_BODY
+    return bool(np.all(positions[:, joint, 1] - lowest < _NEAR_GROUND) and np.all(near))
+
+
+def _distance(positions: Poses, joint: int, hips: int) -> NDArray[np.float64]:
+    """(F,) distance on the ground."""
+    return np.asarray(np.linalg.norm(positions[:, joint, ::2] - positions[:, hips, ::2], axis=1), np.float64)
 
 
 def _travels(positions: Poses, joint: int) -> bool:

@@ -13,7 +13,7 @@ from gmr.frames import Rows
 from gmr.matching.body import Poses, leg_length, turned_upright, up_axis
 from gmr.matching.joints import Joints, find_joints
 from gmr.matching.prepare import guessed_unit, in_metres_upright, unit_text
-from gmr.matching.root import RootJoint, find_root_joint
+from gmr.matching.root import RootJoint, find_root_joint, joints_left_behind
 from gmr.motion import Motion
 from gmr.skeleton import Skeleton
 from gmr.tpose import leading_rest_frames
@@ -53,6 +53,8 @@ class Survey:
     """Height of the ground in the files, metres; 0 where it is near 0."""
     root: RootJoint | None
     """The joint that already is a simulation root, None where one is made."""
+    left_behind: tuple[int, ...]
+    """Joints above the hips that stay behind in the world when the body walks away, the uppermost first."""
     excluded: Mapping[str, str]
     """Clips left out, by name, and why."""
     notes: tuple[str, ...]
@@ -97,7 +99,20 @@ def survey(
         notes.append(f"The files have {up} up; they were turned to +Y.")
     if floor:
         notes.append(f"The ground of the files lies at {floor:.2f} m; they were moved to have it at 0.")
-    return Survey(usable, skipped, sampled, skeleton, joints, up, units, floor, root, excluded, tuple(notes))
+    return Survey(
+        motions=usable,
+        skipped=skipped,
+        samples=sampled,
+        skeleton=skeleton,
+        joints=joints,
+        up=up,
+        units=units,
+        floor=floor,
+        root=root,
+        left_behind=joints_left_behind(skeleton, joints, upright),
+        excluded=excluded,
+        notes=tuple(notes),
+    )
 
 
 def listed(names: Iterable[str], limit: int = 5) -> str:
@@ -164,7 +179,7 @@ def _without_tposes(
     if not skipped:
         return motions, {}, []
     note = (
-        f"Frame 0 of {len(skipped)} of {len(motions)} clips is a T-pose that a converter added (whole-number "
+        f"{len(skipped)} of {len(motions)} clips begin with a T-pose that a converter added (whole-number "
         f"angles, then a jump of the whole body); it was left out ({listed(skipped, 3)})."
     )
     return {name: motion[skipped.get(name, 0) :] for name, motion in motions.items()}, skipped, [note]
