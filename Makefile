@@ -1,20 +1,70 @@
-# Two commands do all the set-up: `make demo` and `make test`. Everything goes into .venv/ and target/.
+# Two commands do all the set-up: `make demo` and `make test`. All they install goes into .venv/ and target/.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+REPORT ?= gmr-demo/report.html
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test build develop lint format check clean
+.PHONY: demo test build develop check-machine check-rust check-python smoke bench fuzz format clean help
 
-$(BIN)/python:
+demo: build ## Evaluate the clips that ship with gmr and write the report
+	$(BIN)/gmr demo --out $(REPORT)
+
+test: develop ## Everything that a contributor needs before a commit
+	$(MAKE) --no-print-directory check-rust check-python smoke
+
+build: $(VENV)/.gmr ## Build gmr into .venv/
+
+develop: $(VENV)/.develop ## Build gmr into .venv/ with all that tests and benchmarks need
+
+bench: develop ## gmr against its peers, on this machine
+	$(BIN)/gmr bench
+
+fuzz: develop ## Ten minutes of hostile bytes for each reader
+	scripts/fuzz.sh
+
+format: develop ## Write all code in the house's format
+	cargo fmt --all
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+check-rust:
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --quiet -- -D warnings
+	cargo test --workspace --quiet
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
+
+check-python:
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/pytest
+
+smoke:
+	$(BIN)/gmr bench --smoke
+
+clean: ## Remove all that make has made
+	rm -rf $(VENV) target gmr-demo
+
+help:
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+
+SOURCES := Cargo.toml Cargo.lock pyproject.toml $(shell find crates python/gmr -name '*.rs' -o -name Cargo.toml)
+
+# pip must be recent enough to take its build requirements from pyproject.toml.
+$(VENV)/.tools: pyproject.toml | check-machine
 	$(PYTHON) -m venv $(VENV)
-
-$(VENV)/.tools: pyproject.toml | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --upgrade "maturin>=1.9,<2"
 	touch $@
 
-build: $(VENV)/.tools
+$(VENV)/.gmr: $(VENV)/.tools $(SOURCES)
+	@echo "Building gmr (about a minute the first time) ..."
 	. $(BIN)/activate && maturin develop --release --quiet
+	touch $@
 
-develop: $(VENV)/.tools
+$(VENV)/.develop: $(VENV)/.gmr
 	. $(BIN)/activate && maturin develop --release --quiet --extras report,bench,dev
+	touch $@
+
+check-machine:
+	@PYTHON="$(PYTHON)" scripts/check_machine.sh

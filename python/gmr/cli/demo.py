@@ -1,0 +1,33 @@
+"""``gmr demo``: the main job, on the clips that ship with gmr."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.option(
+    "--out",
+    type=click.Path(dir_okay=False, path_type=Path),
+    default=Path("gmr-demo/report.html"),
+    show_default=True,
+    help="Where the report goes.",
+)
+@click.pass_context
+def demo(context: click.Context, out: Path) -> None:
+    """Evaluate the clips that ship with gmr: real walks and runs, and their mirrored copies.
+
+    Does what `gmr evaluate FOLDER --mirror` does on a folder of your own.
+    """
+    from gmr.cli.evaluate import evaluate
+    from gmr.demo import CREDIT, demo_folder
+
+    folder = demo_folder()
+    click.echo(f"Evaluating the {len(list(folder.glob('*.bvh')))} clips of real people that ship with gmr,")
+    click.echo("and their mirrored copies, as a motion-matching dataset.\n")
+    out.parent.mkdir(parents=True, exist_ok=True)
+    context.invoke(evaluate, folder=folder, out=out, mirror=True)
+    click.echo(f"\n{CREDIT}")
+    click.echo("\nNext: gmr evaluate FOLDER, with a folder of your own BVH files.")

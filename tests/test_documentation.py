@@ -1,0 +1,62 @@
+"""Every example of the documentation runs as it is printed."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from gmr.demo import demo_folder
+
+ROOT = Path(__file__).parent.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+BLOCK = re.compile(r"^```(python|console)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    return [text for found, text in BLOCK.findall(page.read_text(encoding="utf-8")) if found == language]
+
+
+def pages_with(language: str) -> list[Path]:
+    return [page for page in PAGES if blocks(page, language)]
+
+
+@pytest.fixture
+def reader_folder(tmp_path: Path) -> Path:
+    """What the documentation assumes: a file walk.bvh and a folder takes/ of a few clips."""
+    takes = tmp_path / "takes"
+    takes.mkdir()
+    for clip in ("02_01", "07_01", "07_12", "08_01", "09_01", "09_02"):
+        shutil.copy(demo_folder() / f"{clip}.bvh", takes)
+    shutil.copy(demo_folder() / "07_01.bvh", tmp_path / "walk.bvh")
+    return tmp_path
+
+
+@pytest.mark.parametrize("page", pages_with("python"), ids=lambda page: page.name)
+def test_python_examples_run(page: Path, reader_folder: Path) -> None:
+    program = "\n".join(blocks(page, "python"))
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=reader_folder, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("page", pages_with("console"), ids=lambda page: page.name)
+def test_console_examples_run(page: Path, reader_folder: Path) -> None:
+    for block in blocks(page, "console"):
+        for line in block.splitlines():
+            if not line.startswith("$ gmr "):
+                continue
+            command = [sys.executable, "-m", "gmr", *shlex.split(line.removeprefix("$ gmr "), comments=True)]
+            done = subprocess.run(command, cwd=reader_folder, capture_output=True, text=True, check=False)
+            assert done.returncode == 0, f"{line}\n{done.stdout}\n{done.stderr}"
+
+
+def test_there_are_examples() -> None:
+    assert ROOT / "README.md" in pages_with("python")
+    assert ROOT / "README.md" in pages_with("console")
