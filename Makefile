@@ -67,4 +67,4 @@ $(VENV)/.develop: $(VENV)/.gmr
 	touch $@
 
 check-machine:
-	@PYTHON="$(PYTHON)" scripts/check_machine.sh
+	@PYTHON="$(PYTHON)" tools/check_machine.sh

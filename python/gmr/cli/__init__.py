@@ -15,7 +15,7 @@ from gmr.cli.common import finished
 
 __all__ = ["gmr", "main"]
 
-COMMANDS: Final = ("info", "convert", "evaluate")
+COMMANDS: Final = ("evaluate", "info", "convert", "bench", "demo")
 
 
 class Commands(click.Group):
