@@ -2,10 +2,12 @@
 
 Run by hand, with Blender 3.4 or newer on the path, whenever a file is added:
 
-    blender --background --python tests/oracles/record_blender.py -- tests/data/FILE.bvh ... tests/data/blender
+    cd tests/data/blender
+    blender --background --python ../../oracles/record_blender.py -- *.bvh .
 
-For each file it writes FILE.json into the folder named last: the heads of all pose bones in a few frames, turned
-back from Blender's Z-up to the file's Y-up, ``(x, y, z) = (X, Z, -Y)``, and the tails of the bones at rest.
+For each file it writes FILE.json into the folder named last: the heads of all pose bones in a few frames,
+turned back from Blender's Z-up to the file's Y-up, ``(x, y, z) = (X, Z, -Y)``, and the bones' heads and tails
+at rest.
 """
 
 import builtins

@@ -58,9 +58,7 @@ def frame_cost(frame_count: int) -> Iterator[Contest]:
         if count > 28 * frame_count:
             return
         ours = OurKinematics(cmu_like_motion(min(count, frame_count)), frame_count=count)
-        yield Contest(
-            f"FK, f32 positions of {count:,} frames", "M frames/s", count / 1e6, ours.positions
-        )
+        yield Contest(f"FK, f32 positions of {count:,} frames", "M frames/s", count / 1e6, ours.positions)
 
 
 class OurKinematics:
@@ -138,8 +136,9 @@ def _pybvh_call(peers: Peers, motion: gmr.Motion, ours: OurKinematics) -> Callab
     skeleton = motion.skeleton
     own = joint_slots(skeleton)
     rows = motion.rows
-    columns = motion.layout.rotation_columns
-    axes = motion.layout.rotation_axes
+    layout = motion.layout
+    assert layout is not None, "a motion that was read has channels"
+    columns, axes = layout.rotation_columns, layout.rotation_axes
     topology = pybvh.FkTopology(
         offsets=skeleton.offsets,
         parent_idx=skeleton.parents,

@@ -81,7 +81,9 @@ def run_contest(contest: Contest, *, rounds: int, seconds: float) -> list[Row]:
     rates = sorted(contest.amount / t for t in times[""])
     ours = (statistics.median(rates), rates[0], rates[-1])
     rows = [_row(contest, ours, peer, times) for peer in contest.peers]
-    rows += [Row(contest.work, contest.unit, *ours, peer=peer, note=how) for peer, how in contest.absent.items()]
+    rows += [
+        Row(contest.work, contest.unit, *ours, peer=peer, note=how) for peer, how in contest.absent.items()
+    ]
     return rows or [Row(contest.work, contest.unit, *ours)]
 
 

@@ -18,7 +18,7 @@ LARGE_FRAME_COUNT = 36_088
 
 
 def data_folder(name: str) -> Path | None:
-    """A folder below ``GMR_DATA`` with large real files, None where the variable or the folder is not there."""
+    """A folder below ``GMR_DATA`` with large real files; None where there is none."""
     root = os.environ.get("GMR_DATA")
     folder = Path(root) / name if root else None
     return folder if folder is not None and folder.is_dir() else None

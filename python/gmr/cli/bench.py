@@ -56,7 +56,9 @@ _HEADER = f"{'work':46} {'gmr':>22}   {'peer':24} {'ratio (lowest to highest)':>
 
 def _line(row) -> str:  # type: ignore[no-untyped-def]
     ours = f"{row.ours:,.3g} {row.unit}" if row.ours < 1000 else f"{row.ours:,.0f} {row.unit}"
-    ratio = row.note if row.ratio is None else f"{row.ratio:.1f}x ({row.ratio_low:.1f} to {row.ratio_high:.1f})"
+    ratio = (
+        row.note if row.ratio is None else f"{row.ratio:.1f}x ({row.ratio_low:.1f} to {row.ratio_high:.1f})"
+    )
     theirs = "" if row.theirs is None else f"{row.peer} {row.theirs:.3g}"
     target = "" if row.target is None else f"{row.target:g}x"
     return f"{row.work:46} {ours:>22}   {theirs or row.peer:24} {ratio:>28} {target:>9}".rstrip()
