@@ -20,8 +20,8 @@ develop: $(VENV)/.develop ## Build gmr into .venv/ with all that tests and bench
 bench: develop ## gmr against its peers, on this machine
 	$(BIN)/gmr bench
 
-fuzz: develop ## Ten minutes of hostile bytes for each reader
-	scripts/fuzz.sh
+fuzz: develop ## Ten minutes of hostile bytes for each fuzz target
+	tools/fuzz.sh
 
 format: develop ## Write all code in the house's format
 	cargo fmt --all
