@@ -171,8 +171,14 @@ def test_pointing_at_a_trial_tells_its_figures(opened: Opened) -> None:
     cell.hover(force=True)
     told = opened.page.locator("#vg-tooltip-element.visible")
     told.wait_for()
-    for figure in ("Mean offset", "95 %", "Largest offset", "Speed error", "Turn rate error"):
+    for figure in ("Mean offset", "95%", "Largest offset", "Speed error", "Turn rate error"):
         assert figure in told.inner_text()
+    for row in told.locator("tr").all():
+        key, value = (row.locator(f"td.{part}").bounding_box() for part in ("key", "value"))
+        assert key is not None
+        assert value is not None
+        assert key["x"] + key["width"] <= value["x"]
+        assert key["width"] > 60
 
 
 def test_every_measure_of_every_tracking_has_its_map(opened: Opened) -> None:

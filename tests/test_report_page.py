@@ -202,6 +202,10 @@ def test_steps_of_odd_columns_come_back(values: list[float]) -> None:
     np.testing.assert_allclose(unpacked(column), values, rtol=0, atol=0.51 * column["step"])
 
 
+def test_hips_that_are_the_root_keep_the_whole_body(evaluation: Evaluation) -> None:
+    assert packed_replay(evaluation.replay, "Hips") == packed_replay(evaluation.replay)
+
+
 def test_replayed_joints_are_within_a_tenth_of_a_millimetre_of_the_trial(evaluation: Evaluation) -> None:
     replay = evaluation.replay
     stored = packed_replay(replay)
@@ -220,6 +224,21 @@ def test_a_long_replay_is_thinned_and_keeps_every_jump() -> None:
     assert len(unpacked(stored["jumped"])) == stored["steps"]
     pairs = np.pad(replay.jumped, (0, len(replay.jumped) % 2)).reshape(-1, 2)
     np.testing.assert_array_equal(unpacked(stored["jumped"]).astype(bool), pairs.any(axis=1))
+
+
+def test_a_root_above_the_hips_is_not_drawn(evaluation: Evaluation) -> None:
+    replay = evaluation.replay
+    far = np.full((len(replay.positions), 1, 3), 500.0, np.float32)
+    rooted = replace(
+        replay,
+        positions=np.concatenate([far, replay.positions], axis=1),
+        parents=np.append(np.int32(-1), replay.parents + 1).astype(np.int32),
+        joint_names=("Root", *replay.joint_names),
+    )
+    stored = packed_replay(rooted, "Hips")
+    assert stored["parents"][:2] == [-1, -1]
+    assert stored["parents"][2:] == [parent + 1 for parent in replay.parents.tolist()[1:]]
+    assert stored["unit"] < 1e-4
 
 
 def test_left_and_right_are_found_in_the_names_of_many_skeletons() -> None:

@@ -141,11 +141,11 @@ def _sentence(names: list[str], transitions: Table, lines: Table, joined: NDArra
     others = (joined + joined.T > 0) & ~np.eye(len(names), dtype=bool)
     partners = others.sum(axis=1)
     hub = int(np.argmax(partners))
+    share = percent(int(lines["count"].sum()) / total)
     return (
-        f"Drawn are {count(len(lines), 'strongest path')}, {percent(int(lines['count'].sum()) / total)} of "
-        f"the jumps. {names[hub]} (number {hub + 1}) exchanges jumps with {int(partners[hub])} of the other "
-        f"{len(names) - 1} clips. Frames run clockwise from the top of each circle; a larger dot is played "
-        f"more."
+        f"Drawn are the {count(len(lines), 'strongest path')}, {share} of the jumps. {names[hub]} "
+        f"(number {hub + 1}) exchanges jumps with {int(partners[hub])} of the other {len(names) - 1} clips. "
+        f"Frames run clockwise from the top of each circle; a larger dot is played more."
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.evaluation.figures.figure import Figure
-from gmr.evaluation.figures.theme import NAMES_AXIS, ROW
+from gmr.evaluation.figures.theme import NAMES_AXIS, NAMES_CONFIG, ROW
 from gmr.evaluation.figures.wording import base_name, short_names
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.table import Table
@@ -109,6 +109,7 @@ def _chart(bars: int, mirrored: bool) -> dict[str, Any]:
     }
     return {
         "width": "container",
+        "config": NAMES_CONFIG,
         "height": ROW * max(bars, 1),
         "data": {"name": "bars"},
         "mark": {"type": "bar", "height": {"band": 0.72}, "aria": False},

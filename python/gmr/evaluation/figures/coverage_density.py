@@ -21,7 +21,7 @@ __all__ = ["coverage_density", "seconds_near_pairs"]
 
 _CELLS: Final = Bins(speed=0.1, turn_rate_deg=5.0, blur=0.0)
 _SECONDS: Final = Classes("amount", (0.1, 0.3, 1.0, 3.0, 10.0, 30.0))
-_RARE: Final = 0.005
+_RARE: Final = 0.02
 """Share of the time that may turn too fast for the picture, which turning on the spot would stretch."""
 
 

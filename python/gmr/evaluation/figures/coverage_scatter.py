@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gmr.evaluation.figures.figure import Figure
 from gmr.evaluation.figures.theme import turn_ticks
+from gmr.evaluation.figures.wording import base_name
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.table import Table
 from gmr.evaluation.words import count, percent
@@ -27,8 +29,8 @@ def coverage_scatter(evaluation: Evaluation) -> Figure:
     With more windows than can be drawn every n-th is, and the sentence says so.
     """
     windows = evaluation.measured.coverage
-    step = -(-len(windows) // _MOST_POINTS)
-    shown = windows.take(np.arange(0, len(windows), max(step, 1)))
+    step = max(-(-len(windows) // _MOST_POINTS), 1)
+    shown = windows.take(_every(step, windows["clip"]))
     clips, number = np.unique(shown["clip"].astype(str), return_inverse=True)
     points = Table(
         {
@@ -43,11 +45,18 @@ def coverage_scatter(evaluation: Evaluation) -> Figure:
     return Figure(
         name="coverage_scatter",
         title="Speed and turn rate of every second of motion, by clip",
-        sentence=_sentence(windows, len(clips), step),
+        sentence=_sentence(windows, len({base_name(clip) for clip in clips.tolist()}), step),
         chart=_chart(points),
         data={"windows": points, "chosen": points.take(np.arange(0))},
         printable=False,
     )
+
+
+def _every(step: int, clips: NDArray[Any]) -> NDArray[np.int64]:
+    """Rows of every ``step``-th window of each clip, the first one among them, so that none is missing."""
+    starts = np.flatnonzero(np.append(True, clips[1:] != clips[:-1])) if len(clips) else np.zeros(0, np.int64)
+    within = np.arange(len(clips)) - np.repeat(starts, np.diff(np.append(starts, len(clips))))
+    return np.flatnonzero(within % step == 0)
 
 
 def _sentence(windows: Table, clip_count: int, step: int) -> str:

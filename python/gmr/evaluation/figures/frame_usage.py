@@ -9,7 +9,7 @@ import numpy as np
 from gmr.evaluation.figures.classes import Classes
 from gmr.evaluation.figures.clip_usage import MOST_BARS, recordings
 from gmr.evaluation.figures.figure import Figure
-from gmr.evaluation.figures.theme import NAMES_AXIS, ROW
+from gmr.evaluation.figures.theme import NAMES_AXIS, NAMES_CONFIG, ROW
 from gmr.evaluation.figures.wording import base_name, short_names
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.table import Table
@@ -79,6 +79,7 @@ def _sentence(usage: Table) -> str:
 def _chart(labels: list[str]) -> dict[str, Any]:
     return {
         "width": "container",
+        "config": NAMES_CONFIG,
         "height": ROW * max(len(labels), 1),
         "data": {"name": "pieces"},
         "mark": {"type": "rect", "height": {"band": 0.72}, "aria": False},

@@ -16,7 +16,7 @@ from gmr.evaluation.words import count, listing, percent
 
 __all__ = ["holds_map"]
 
-_OUTCOMES: Final = ("holds", "strays from the path", "wrong speed", "wrong turn rate")
+_OUTCOMES: Final = ("as asked", "strays from the path", "wrong speed", "wrong turn rate")
 _COLOURS: Final = ("holds", "strays", "wrong-speed", "wrong-turn")
 _MARKS: Final = ("✓", "path", "speed", "turn")
 
@@ -67,8 +67,8 @@ def _sentence(outcome: NDArray[np.int64], limits: Limits, *, timed: bool) -> str
         f"within {limits.turn_rate_deg:g} degrees/s of the turn rate",
     ]
     told = [text for text, kind in zip(failed, (1, 2, 3), strict=True) if number[kind]]
-    return f"{count(int(number[0]), 'trial holds', 'trials hold')}: on average {listing(within)}. " + (
-        f"Of the others, {listing(told)}, by the limit that is exceeded most." if told else "None fails."
+    return f"{count(int(number[0]), 'trial goes', 'trials go')} as asked: on average {listing(within)}. " + (
+        f"Of the others, {listing(told)}, by the limit that is exceeded most." if told else "No trial fails."
     )
 
 

@@ -12,7 +12,18 @@ import re
 from collections.abc import Mapping
 from typing import Any, Final
 
-__all__ = ["DARK", "FONT", "LIGHT", "LOOK", "NAMES_AXIS", "ROW", "STEPS", "in_light_colours", "turn_ticks"]
+__all__ = [
+    "DARK",
+    "FONT",
+    "LIGHT",
+    "LOOK",
+    "NAMES_AXIS",
+    "NAMES_CONFIG",
+    "ROW",
+    "STEPS",
+    "in_light_colours",
+    "turn_ticks",
+]
 
 FONT: Final = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 ROW: Final = 21
@@ -138,12 +149,17 @@ LOOK: Final[Mapping[str, Any]] = {
 
 
 NAMES_AXIS: Final[Mapping[str, Any]] = {
-    "labelLimit": 240,
+    "labelLimit": 260,
     "labelColor": "var(--ink)",
-    "labelFontSize": {"expr": "windowSize()[0] < 600 ? 10 : 12"},
+    "labelFontSize": {"expr": "windowSize()[0] < 600 ? 9 : 12"},
     "grid": False,
 }
 """An axis of clip names: smaller on a phone, where they would leave no room for the bars."""
+
+NAMES_CONFIG: Final[Mapping[str, Any]] = {
+    "legend": {"layout": {"top": {"anchor": {"signal": "windowSize()[0] < 600 ? 'end' : 'start'"}}}}
+}
+"""Beside clip names the chart of a phone is narrower than its legend, which may then reach over the names."""
 
 
 def in_light_colours(description: Any) -> Any:

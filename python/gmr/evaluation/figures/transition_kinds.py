@@ -53,7 +53,7 @@ def _sentence(transitions: Table, turns: Any, rates: Any) -> str:
         for kind, label in KIND_LABELS.items()
     }
     most = int(np.argmax(rates))
-    parts = ", ".join(f"{percent(share)} {label}" for label, share in shares.items())
+    parts = ", ".join(f"{percent(share)} {label}" for label, share in shares.items() if share > 0)
     return (
         f"{count(total, 'jump')} in all trials: {parts}. "
         f"Most often the character jumps when {turning(turns[most], turns[most])}, "

@@ -9,7 +9,7 @@ import numpy as np
 from gmr.evaluation.figures.classes import Classes
 from gmr.evaluation.figures.clip_usage import recordings
 from gmr.evaluation.figures.figure import Figure
-from gmr.evaluation.figures.theme import NAMES_AXIS, ROW
+from gmr.evaluation.figures.theme import NAMES_AXIS, NAMES_CONFIG, ROW
 from gmr.evaluation.figures.wording import base_name, short_names
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.table import Table
@@ -95,6 +95,7 @@ def _sentence(all_flows: Table, inside: Any) -> str:
 def _chart(rows: list[str], numbers: list[str]) -> dict[str, Any]:
     return {
         "width": "container",
+        "config": NAMES_CONFIG,
         "height": ROW * max(len(rows), 1),
         "data": {"name": "cells"},
         "mark": {"type": "rect", "stroke": "var(--page)", "strokeWidth": 1, "aria": False},
@@ -111,7 +112,12 @@ def _chart(rows: list[str], numbers: list[str]) -> dict[str, Any]:
                 "type": "nominal",
                 "title": "To clip number",
                 "scale": {"domain": numbers},
-                "axis": {"labelAngle": 0, "grid": False, "labelOverlap": True},
+                "axis": {
+                    "labelAngle": 0,
+                    "grid": False,
+                    "labelOverlap": True,
+                    "labelFontSize": {"expr": "windowSize()[0] < 600 ? 9 : 12"},
+                },
             },
             "color": _JUMPS.colour("Jumps in all trials", narrow=2),
             "tooltip": [

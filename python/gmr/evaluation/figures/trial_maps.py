@@ -50,7 +50,7 @@ def trials_of(evaluation: Evaluation, scenario: str, tracking: str) -> Table:
 
 HOVER: Final = {
     "offset_mean": ("Mean offset, m", ".2f"),
-    "offset_p95": ("95 % of the time below, m", ".2f"),
+    "offset_p95": ("95% of the time below, m", ".2f"),
     "offset_max": ("Largest offset, m", ".2f"),
     "speed_error": ("Speed error, m/s", "+.2f"),
     "turn_rate_error_deg": ("Turn rate error, deg/s", "+.1f"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import PurePosixPath
 from typing import Final
@@ -11,7 +12,7 @@ from gmr.evaluation.words import turning
 
 __all__ = ["asked", "base_name", "metres", "short_names"]
 
-_LONGEST_LABEL: Final = 26
+_LONGEST_LABEL: Final = 32
 _AGAIN: Final = "\N{NO-BREAK SPACE}#"
 
 
@@ -51,4 +52,8 @@ def short_names(clips: Sequence[str]) -> list[str]:
 
 
 def _end_of(name: str) -> str:
-    return name if len(name) <= _LONGEST_LABEL else f"…{name[1 - _LONGEST_LABEL :]}"
+    if len(name) <= _LONGEST_LABEL:
+        return name
+    end = name[1 - _LONGEST_LABEL :]
+    word = re.search(r"[\W_](?=.{16})", end)
+    return f"…{end[word.end() :] if word else end}"

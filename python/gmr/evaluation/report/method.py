@@ -50,7 +50,7 @@ def _setting(value: Any) -> str:
         case float():
             return f"{value:g}"
         case Mapping():
-            return ", ".join(f"{_words(str(name))} {_setting(part)}" for name, part in value.items())
+            return "; ".join(f"{_words(str(name))}: {_setting(part)}" for name, part in value.items())
         case list() | tuple():
             return ", ".join(_setting(part) for part in value)
         case None:

@@ -21,7 +21,7 @@ from gmr.evaluation.table import Table
 
 __all__ = ["page"]
 
-_SCRIPTS = ("data.js", "charts.js", "scatter.js", "tables.js", "player.js")
+_SCRIPTS = ("data.js", "charts.js", "scatter.js", "tables.js", "camera.js", "drawing.js", "player.js")
 
 
 def page(evaluation: Evaluation) -> str:
@@ -63,7 +63,7 @@ def _data(evaluation: Evaluation, drawn: list[Figure]) -> dict[str, Any]:
         "figures": charts,
         "clips": clips,
         "clipGroups": list(groups.values()),
-        "replay": packed_replay(evaluation.replay),
+        "replay": packed_replay(evaluation.replay, evaluation.summary.joints.get("hips")),
     }
 
 

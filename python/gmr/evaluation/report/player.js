@@ -3,7 +3,7 @@
 
 function player(root) {
   const replay = page.replay;
-  const { rate, steps, joints, parents, sides, head, unit } = replay;
+  const { rate, steps, joints, unit } = replay;
   const [positions, path, plan, offset, clip, seconds, jumped] =
     ["positions", "path", "reference", "offset", "clip", "seconds", "jumped"].map((name) => unpacked(replay[name]));
   const duration = (steps - 1) / rate;
@@ -41,132 +41,13 @@ function player(root) {
   });
   const overview = Math.max(3, Math.hypot(span[0].reach, span[1].reach));
 
-  const NEAR = 0.2;
-  let view = null;
-  function look(now, width, height) {
-    const target = camera.follow ? [now.x, 0.85, now.z] : [span[0].middle, 0, span[1].middle];
-    const focal = Math.min(width, height * 1.2) * 1.15;
-    const distance = (camera.follow ? 4.6 : overview * 2.6) / camera.zoom;
-    const [sinTurn, cosTurn, sinTilt, cosTilt] =
-      [Math.sin(camera.turn), Math.cos(camera.turn), Math.sin(camera.tilt), Math.cos(camera.tilt)];
-    view = {
-      focal, distance, target,
-      /* Camera space: x to the right, y up, z away from the eye. Left of the character is +X, so x is mirrored. */
-      seen(x, y, z) {
-        const dx = x - target[0], dy = y - target[1], dz = z - target[2];
-        const along = dx * sinTurn + dz * cosTurn;
-        return [-(dx * cosTurn - dz * sinTurn), dy * cosTilt + along * sinTilt,
-          distance + along * cosTilt - dy * sinTilt];
-      },
-      drawn([x, y, depth]) {
-        return [width / 2 + (x / depth) * focal, height * (camera.follow ? 0.54 : 0.56) - (y / depth) * focal];
-      },
-    };
-  }
-
-  /* A line from a to b in camera space, cut where it comes behind the eye; false where nothing is left. */
-  function line(context, a, b) {
-    if (a[2] < NEAR && b[2] < NEAR) return false;
-    const cut = (from, to) => {
-      if (from[2] >= NEAR) return from;
-      const part = (NEAR - from[2]) / (to[2] - from[2]);
-      return from.map((value, axis) => value + part * (to[axis] - value));
-    };
-    context.moveTo(...view.drawn(cut(a, b)));
-    context.lineTo(...view.drawn(cut(b, a)));
-    return true;
-  }
-
-  function ground(context, now) {
-    const reach = camera.follow ? 9 : Math.ceil(overview * 1.3);
-    const cell = camera.follow || overview < 12 ? 1 : 5;
-    const middle = [view.target[0], view.target[2]].map((value) => Math.round(value / cell) * cell);
-    context.strokeStyle = colours.line;
-    context.lineWidth = 1;
-    for (let k = -Math.ceil(reach / cell); k <= Math.ceil(reach / cell); k += 1) {
-      context.globalAlpha = camera.follow ? Math.max(0, 1 - Math.abs(k * cell) / reach) : 0.7;
-      context.beginPath();
-      const [x, z] = [middle[0] + k * cell, middle[1] + k * cell];
-      line(context, view.seen(x, 0, middle[1] - reach), view.seen(x, 0, middle[1] + reach));
-      line(context, view.seen(middle[0] - reach, 0, z), view.seen(middle[0] + reach, 0, z));
-      context.stroke();
-    }
-    context.globalAlpha = 1;
-  }
-
-  function way(context, points, from, to, colour, width, dashes) {
-    context.strokeStyle = colour;
-    context.lineWidth = width;
-    context.setLineDash(dashes);
-    context.beginPath();
-    const stride = Math.max(1, Math.round(rate / 15));
-    let last = view.seen(points[from * 2], 0, points[from * 2 + 1]);
-    for (let step = from + stride; step < to + stride; step += stride) {
-      const at = Math.min(step, to);
-      const next = view.seen(points[at * 2], 0, points[at * 2 + 1]);
-      line(context, last, next);
-      last = next;
-    }
-    context.stroke();
-    context.setLineDash([]);
-  }
-
-  function ring(context, x, z, radius, colour) {
-    context.strokeStyle = colour;
-    context.lineWidth = 2.5;
-    context.beginPath();
-    for (let k = 0; k < 24; k += 1) {
-      const [a, b] = [k, k + 1].map((place) => (place / 12) * Math.PI);
-      line(context, view.seen(x + radius * Math.sin(a), 0, z + radius * Math.cos(a)),
-        view.seen(x + radius * Math.sin(b), 0, z + radius * Math.cos(b)));
-    }
-    context.stroke();
-  }
-
-  function skeleton(context) {
-    const bones = [];
-    for (let joint = 0; joint < joints; joint += 1) {
-      const parent = parents[joint];
-      if (parent < 0) continue;
-      const [a, b] = [parent, joint].map((end) => view.seen(pose[end * 3], pose[end * 3 + 1], pose[end * 3 + 2]));
-      if (Math.min(a[2], b[2]) > NEAR) bones.push({ a, b, side: sides[joint], depth: a[2] + b[2] });
-    }
-    context.lineCap = "round";
-    context.globalAlpha = 0.13;
-    context.strokeStyle = colours.ink;
-    context.lineWidth = Math.max(2, (0.09 * view.focal) / view.distance);
-    context.beginPath();
-    for (let joint = 0; joint < joints; joint += 1) {
-      const parent = parents[joint];
-      if (parent < 0) continue;
-      line(context, view.seen(pose[parent * 3], 0, pose[parent * 3 + 2]), view.seen(pose[joint * 3], 0, pose[joint * 3 + 2]));
-    }
-    context.stroke();
-    context.globalAlpha = 1;
-    bones.sort((first, second) => second.depth - first.depth);
-    for (const { a, b, side, depth } of bones) {
-      const width = Math.max(2, (0.062 * view.focal * 2) / depth);
-      for (const [colour, extra] of [[colours.panel, 2.5], [[colours.ink, colours.left, colours.right][side], 0]]) {
-        context.strokeStyle = colour;
-        context.lineWidth = width + extra;
-        context.beginPath();
-        context.moveTo(...view.drawn(a));
-        context.lineTo(...view.drawn(b));
-        context.stroke();
-      }
-    }
-    if (head.length) {
-      const middle = [0, 1, 2].map((axis) =>
-        pose[head[0] * 3 + axis] * 0.5 + pose[head[1] * 3 + axis] * 0.5 + (axis === 1 && head[0] === head[1] ? 0.08 : 0));
-      const seen = view.seen(...middle);
-      if (seen[2] > NEAR) {
-        context.fillStyle = colours.ink;
-        context.beginPath();
-        context.arc(...view.drawn(seen), Math.max(2, (0.105 * view.focal) / seen[2]), 0, 2 * Math.PI);
-        context.fill();
-      }
-    }
-    context.lineCap = "butt";
+  function eye(now, width, height) {
+    return eyeOf({
+      turn: camera.turn, tilt: camera.tilt, width, height,
+      distance: (camera.follow ? 4.6 : overview * 2.6) / camera.zoom,
+      target: camera.follow ? [now.x, 0.85, now.z] : [span[0].middle, 0, span[1].middle],
+      middle: camera.follow ? 0.54 : 0.56,
+    });
   }
 
   function sized(canvas) {
@@ -184,20 +65,30 @@ function player(root) {
 
   function drawStage(now) {
     const { context, width, height } = sized(stage);
-    look(now, width, height);
-    ground(context, now);
-    way(context, plan, 0, steps - 1, colours.plan, 2, [8, 6]);
-    context.globalAlpha = 0.35;
-    way(context, path, now.step, steps - 1, colours.path, 1.5, []);
-    context.globalAlpha = 1;
-    way(context, path, 0, now.step, colours.path, 3, []);
-    context.strokeStyle = colours.plan;
-    context.lineWidth = 2;
+    const seen = eye(now, width, height);
+    const stride = Math.max(1, Math.round(rate / 15));
+    const pen = (colour, size, alpha = 1, dashes = []) => {
+      context.strokeStyle = colour;
+      context.lineWidth = size;
+      context.globalAlpha = alpha;
+      context.setLineDash(dashes);
+    };
+    const reach = camera.follow ? 9 : Math.ceil(overview * 1.3);
+    const cell = camera.follow || overview < 12 ? 1 : 5;
+    drawGround(context, seen, { colour: colours.line, reach, cell, fading: camera.follow });
+    pen(colours.plan, 2, 1, [8, 6]);
+    drawWay(context, seen, plan, 0, steps - 1, stride);
+    pen(colours.path, 1.5, 0.35);
+    drawWay(context, seen, path, now.step, steps - 1, stride);
+    pen(colours.path, 3);
+    drawWay(context, seen, path, 0, now.step, stride);
+    pen(colours.plan, 2.5);
     context.beginPath();
-    line(context, view.seen(now.x, 0, now.z), view.seen(now.planX, 0, now.planZ));
+    seen.line(context, seen.seen(now.x, 0, now.z), seen.seen(now.planX, 0, now.planZ));
     context.stroke();
-    ring(context, now.planX, now.planZ, 0.22, colours.plan);
-    skeleton(context);
+    drawRing(context, seen, now.planX, now.planZ, 0.22);
+    drawShadow(context, seen, pose, replay.parents, colours.ink);
+    drawSkeleton(context, seen, pose, replay, colours);
   }
 
   /* The offset over the whole trial, with a tick for every jump. */

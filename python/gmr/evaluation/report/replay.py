@@ -24,17 +24,24 @@ _RIGHT: Final = re.compile(
 )
 
 
-def packed_replay(replay: Replay) -> dict[str, Any]:
+def packed_replay(replay: Replay, hips: str | None = None) -> dict[str, Any]:
     """The replay for the page's JSON.
 
     Positions are int16, in units of ``unit`` metres, and horizontally relative to the path: 0.1 mm or better
     wherever on the ground the trial goes.
+
+    Args:
+        replay: the trial.
+        hips: name of the joint that the body hangs on. What is above it, a root that may stand anywhere, is
+            not drawn.
     """
     steps, joints, _ = replay.positions.shape
     stride = max(1, -(-steps * joints * 6 // _MOST_BYTES))
+    parents = _drawn_parents(replay, hips)
     about = replay.positions[::stride].astype(np.float64)
     about[..., 0] -= replay.path[::stride, None, 0]
     about[..., 2] -= replay.path[::stride, None, 1]
+    about[:, ~_on_a_bone(parents)] = 0.0
     used, clip = np.unique(replay.clip, return_inverse=True)
     unit = float(np.abs(about).max(initial=1e-3)) / 32767
     return {
@@ -43,7 +50,7 @@ def packed_replay(replay: Replay) -> dict[str, Any]:
         "joints": joints,
         "unit": unit,
         "positions": packed_array(np.rint(about / unit).astype(np.int16)),
-        "parents": replay.parents.tolist(),
+        "parents": parents.tolist(),
         "sides": sides(replay.joint_names),
         "head": _head(replay),
         "path": packed_array(replay.path[::stride].astype(np.float32)),
@@ -90,6 +97,26 @@ def _head(replay: Replay) -> list[int]:
     if len(children) == 0:
         return [head, head]
     return [head, int(children[np.argmax(replay.positions[0, children, 1])])]
+
+
+def _drawn_parents(replay: Replay, hips: str | None) -> NDArray[np.int32]:
+    """The parents, -1 also for the hips, for every joint above them, and for what else hangs on those."""
+    parents = replay.parents.astype(np.int32)
+    above: list[int] = []
+    joint = int(parents[replay.joint_names.index(hips)]) if hips in replay.joint_names else -1
+    while joint >= 0:
+        above.append(joint)
+        joint = int(parents[joint])
+    parents[above] = -1
+    parents[np.isin(parents, above)] = -1
+    return parents
+
+
+def _on_a_bone(parents: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """(J,) whether a bone begins or ends at a joint."""
+    on = parents >= 0
+    on[parents[on]] = True
+    return on
 
 
 def _any_of_stride(jumped: NDArray[np.bool_], stride: int) -> NDArray[np.bool_]:

@@ -137,7 +137,7 @@ def _notes(notes: Sequence[str]) -> str:
     if not notes:
         return ""
     content = element("h2", "Noticed on the way") + element("ul", items(notes))
-    return element("div", content, class_="notice", id="notes")
+    return element("div", content, class_="notice calm", id="notes")
 
 
 def _figure(figure: Figure, controls: str = "", *, choice: str | None = None, hidden: bool = False) -> str:
@@ -246,7 +246,7 @@ def _tables(evaluation: Evaluation) -> str:
 def _each_table(evaluation: Evaluation) -> Iterator[tuple[str, str, str]]:
     measured = evaluation.measured
     named: list[tuple[str, str, Any, list[Column]]] = [
-        ("trials", "Trials", measured.trials, trial_columns()),
+        ("trials", "Trials", measured.trials, trial_columns(measured.trials)),
         ("clips", "Clips", recordings(measured.clips), clip_columns()),
         ("jumps", "Jumps from clip to clip", flows(measured.transitions), flow_columns()),
     ]

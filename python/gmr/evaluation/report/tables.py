@@ -31,15 +31,15 @@ class Column:
     form: str = ""
 
 
-def trial_columns() -> list[Column]:
-    """What the page shows of the trials."""
+def trial_columns(trials: Table) -> list[Column]:
+    """What the page shows of the trials; scenario and tracking only where there is more than one."""
+    named = [Column("scenario", "Scenario"), Column("tracking", "Tracking")]
     return [
-        Column("scenario", "Scenario"),
-        Column("tracking", "Tracking"),
+        *(column for column in named if len(set(trials[column.name].tolist())) > 1),
         Column("speed", "Speed, m/s", "g"),
         Column("turn_rate_deg", "Turn, deg/s", "g"),
         Column("offset_mean", "Offset mean, m", ".2f"),
-        Column("offset_p95", "Offset 95 %, m", ".2f"),
+        Column("offset_p95", "Offset 95%, m", ".2f"),
         Column("offset_max", "Offset max, m", ".2f"),
         Column("speed_error", "Speed error, m/s", "+.2f"),
         Column("turn_rate_error_deg", "Turn error, deg/s", "+.1f"),
