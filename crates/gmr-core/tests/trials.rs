@@ -11,7 +11,7 @@ use gmr_core::matching::path::{ReferencePath, Segment};
 use gmr_core::matching::request::Tracking;
 use gmr_core::matching::trial::{LoggedStep, Profile, Progress, TrialError, TrialLog, Trials, run_trials};
 use proptest::prelude::*;
-use synthetic::{RATE, Walk, database};
+use synthetic::{RATE, Walk, database, database_with_a_past};
 
 fn segment(duration: f64, speed: f64, turn_rate: f64) -> Segment {
     Segment { duration, speed, turn_rate }
@@ -220,7 +220,11 @@ fn expected_query(
     let here = log.steps[step].placement;
     let mut query = database.feature_row(from).to_vec();
     for sample in database.schema().trajectory() {
-        let there = path.at((step as f64 + f64::from(sample.frames)) / RATE);
+        let there = match usize::try_from(step as i64 + i64::from(sample.frames)) {
+            Ok(then) if sample.frames <= 0 => log.steps[then].placement,
+            Err(_) => continue,
+            _ => path.at((step as f64 + f64::from(sample.frames)) / RATE),
+        };
         let turn = there.heading - here.heading;
         let away = there.position - here.position;
         let (sin, cos) = here.heading.sin_cos();
@@ -257,8 +261,10 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
     #[test]
-    fn every_log_obeys_the_laws_of_the_controller(profile in profiles(), settings in settings()) {
-        let database = database(&various());
+    fn every_log_obeys_the_laws_of_the_controller(
+        profile in profiles(), settings in settings(), looks_back in any::<bool>(),
+    ) {
+        let database = if looks_back { database_with_a_past(&various()) } else { database(&various()) };
         let log = run_one(&database, profile.clone(), &settings);
         let path = ReferencePath::new(Placement::default(), &profile.segments).unwrap();
         let interval = (settings.search_every * RATE).round().max(1.0) as usize;

@@ -5,7 +5,7 @@
 use gmr_core::Topology;
 use gmr_core::matching::builder::{ClipPoses, DatabaseBuilder};
 use gmr_core::matching::database::Database;
-use gmr_core::matching::features::Schema;
+use gmr_core::matching::features::{Group, Measure, Schema};
 use gmr_core::matching::ground::Placement;
 use gmr_core::matching::path::{Segment, arc};
 use gmr_core::matching::root::RootTrack;
@@ -68,9 +68,22 @@ pub fn database(clips: &[Walk]) -> Database {
 
 /// The database of these clips at any rate, on either skeleton.
 pub fn database_at(rate: f64, skeleton: Skeleton, clips: &[Walk]) -> Database {
+    let hips = skeleton.translated().len() - 1;
+    let schema = Schema::locomotion(hips + 1, hips + 2, hips, skeleton.topology().joint_count()).unwrap();
+    database_with(rate, skeleton, schema, clips)
+}
+
+/// The database of these clips at [`RATE`], its features looking back as well as ahead.
+pub fn database_with_a_past(clips: &[Walk]) -> Database {
+    let mut groups = Schema::locomotion(1, 2, 0, 4).unwrap().groups().to_vec();
+    for (measure, frames) in [(Measure::RootPosition, [-20, -10]), (Measure::RootFacing, [-15, 0])] {
+        groups.insert(2, Group { name: "past".to_owned(), measure, frames: frames.to_vec(), weight: 0.5 });
+    }
+    database_with(RATE, Skeleton::Plain, Schema::new(groups, 4).unwrap(), clips)
+}
+
+fn database_with(rate: f64, skeleton: Skeleton, schema: Schema, clips: &[Walk]) -> Database {
     let (topology, translated) = (skeleton.topology(), skeleton.translated());
-    let hips = translated.len() - 1;
-    let schema = Schema::locomotion(hips + 1, hips + 2, hips, topology.joint_count()).unwrap();
     let mut builder = DatabaseBuilder::new(topology, translated, schema, rate).unwrap();
     clips.iter().for_each(|clip| clip.add_to(&mut builder, rate, skeleton));
     builder.finish(None).unwrap()
