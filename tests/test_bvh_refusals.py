@@ -103,6 +103,8 @@ def test_what_is_no_number_is_named_with_its_joint_and_a_remedy(
         (TURNS, "CHANNELS 2 Xposition Xposition", "a position twice", 9),
         (TURNS, "CHANNELS 3 Zrotation Xrotation Xrotation", "no Euler angles", 9),
         (TURNS, "CHANNELS 4 Zrotation Xrotation Yrotation Xrotation", "no Euler angles", 9),
+        (TURNS, "CHANNELS 7 " + "Xrotation " * 7, "lists more than 6 channels", 9),
+        (TURNS, "CHANNELS 99 " + "Xrotation " * 99, "lists more than 6 channels", 9),
         (TURNS, f"{TURNS}\n{TURNS}", "two CHANNELS", 10),
         ("OFFSET 1 -2 3.5", "OFFSET 1 2 3\nOFFSET 1 2 3", "two OFFSETs", 9),
         ("OFFSET 1 -2 3.5", "", "joint 'LeftLeg' has no OFFSET", 14),

@@ -16,7 +16,7 @@ import re
 from dataclasses import dataclass, field
 
 from gmr.errors import FormatError
-from gmr.formats.bvh_channels import CHANNELS, checked_channels
+from gmr.formats.bvh_channels import read_channels
 from gmr.formats.numerals import number, why_no_number
 from gmr.formats.text import Text, named, shown
 from gmr.skeleton import End
@@ -162,10 +162,8 @@ class _Reader:
             what = f"{self.title(block.joint)} has CHANNELS after its children. Move CHANNELS before them."
             raise self.text.failure(what)
         block.has_channels = True
-        match = self.text.take_match(CHANNELS)
-        assert match is not None
         try:
-            self.found.channels[block.joint] = checked_channels(match[1], match[2], self.text.peek())
+            self.found.channels[block.joint] = read_channels(self.text)
         except ValueError as error:
             raise self.text.failure(f"{self.title(block.joint)} {error}", at=at) from None
 

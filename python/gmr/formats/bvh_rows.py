@@ -15,6 +15,9 @@ from gmr.formats.text import Text, named
 
 __all__ = ["read_rows"]
 
+_MOST_COUNTED = 1 << 16
+"""Bytes of a line in which superfluous numbers are counted."""
+
 
 def read_rows(text: Text, shape: Shape, declared: int) -> NDArray[np.float64]:
     """Reads (F, C) rows, read-only: as many as are declared, or those that are there.
@@ -58,8 +61,10 @@ def _failure(text: Text, shape: Shape, fault: _Fault) -> FormatError:
         mend = "Write each frame on a line of its own."
         return text.failure(f"{_channel(shape, fault.field)}: {what}. {mend}", at=fault.start)
     if fault.kind == "row too long":
-        count = columns + len(text.data[fault.start : fault.end].split())
-        what = f"frame {fault.row} has {count} numbers, but the joints have {columns} channels"
+        end = min(fault.end, fault.start + _MOST_COUNTED)
+        count = columns + len(text.data[fault.start : end].split())
+        least = "at least " * (end < fault.end)
+        what = f"frame {fault.row} has {least}{count} numbers, but the joints have {columns} channels"
         return text.failure(f"{what}. Remove those too many, or correct CHANNELS.", at=fault.start)
     why = why_no_number(text.data[fault.start : fault.end])
     return text.failure(f"{_channel(shape, fault.field)}: {why}", at=fault.start, column=True)

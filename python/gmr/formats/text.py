@@ -12,7 +12,6 @@ __all__ = ["Text", "named", "shown"]
 
 _TOKEN = re.compile(rb"\s*+([{}]|[^\s{}]+)")
 _PHRASE = re.compile(rb"\s*+([^\r\n{}]*)")
-_LINE_END = re.compile(rb"\r\n?|\n")
 
 _LONGEST_SHOWN = 60
 
@@ -106,7 +105,8 @@ class Text:
 
     def line_of(self, at: int) -> int:
         """1-based line of a byte."""
-        return 1 + sum(1 for _ in _LINE_END.finditer(self.data, 0, at))
+        new_lines, returns, both = (self.data.count(end, 0, at) for end in (b"\n", b"\r", b"\r\n"))
+        return 1 + new_lines + returns - both
 
     def column_of(self, at: int) -> int:
         """1-based character of a byte in its line."""
