@@ -341,6 +341,26 @@ def test_it_prints_on_white_from_dark_mode(browser: Browser, report: Path) -> No
     assert opened.complaints == []
 
 
+def test_charts_follow_a_window_that_changes_while_they_are_hidden(browser: Browser, report: Path) -> None:
+    opened = open_page(browser, report, viewport=DESKTOP)
+    page = opened.page
+    page.locator("input[value=speed_error]").check()
+    page.locator("#trial_map_speed_error .chart[data-drawn]").wait_for()
+    page.set_viewport_size(PHONE)
+    page.locator("input[value=holds]").check()
+    for chart in page.locator(".chart:visible").all():
+        for _ in range(100):
+            box = chart.locator("svg, canvas").first.bounding_box()
+            if box is not None and 250 < box["width"] <= PHONE["width"]:
+                break
+            page.wait_for_timeout(100)
+        else:
+            pytest.fail(f"{chart.get_attribute('data-figure')} does not fit: {box}")
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
+    page.close()
+    assert opened.complaints == []
+
+
 def test_without_scripts_the_words_and_tables_are_there(browser: Browser, report: Path) -> None:
     page = browser.new_page(java_script_enabled=False, viewport=PHONE)
     page.goto(report.as_uri())

@@ -176,6 +176,12 @@ def test_tables_come_back_exactly_from_the_page(evaluation: Evaluation, html: st
         np.testing.assert_array_equal(unpacked(column), evaluation.measured.trials[name])
 
 
+def test_a_long_table_is_packed_exactly_where_that_is_asked_for() -> None:
+    values = np.random.default_rng(3).normal(size=5000)
+    column = packed(Table({"real": values}), exact=True)["columns"]["real"]
+    np.testing.assert_array_equal(unpacked(column), values)
+
+
 @pytest.mark.parametrize("length", [0, 1, 5, 3000])
 def test_packed_columns_keep_their_values(length: int) -> None:
     random = np.random.default_rng(length)

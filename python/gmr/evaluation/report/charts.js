@@ -36,9 +36,14 @@ for (const group of document.querySelectorAll("[data-choose]")) {
   const figures = [...group.querySelectorAll("[data-choice]")];
   group.addEventListener("change", () => {
     const chosen = [...group.querySelectorAll("input:checked, select")].map((control) => control.value).join(" ");
-    for (const figure of figures) {
-      figure.hidden = figure.dataset.choice !== chosen;
-      if (!figure.hidden) chart(figure.querySelector(".chart").dataset.figure);
-    }
+    const shown = figures.find((figure) => figure.dataset.choice === chosen);
+    for (const figure of figures) figure.hidden = figure !== shown;
+    const element = shown.querySelector(".chart");
+    chart(element.dataset.figure).then(() => {
+      /* A chart that was hidden while the window changed has missed it. */
+      if (Math.abs(element.clientWidth - element.querySelector("svg").clientWidth) > 1) {
+        dispatchEvent(new Event("resize"));
+      }
+    });
   });
 }

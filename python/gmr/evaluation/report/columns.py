@@ -20,9 +20,9 @@ _EXACT_ROWS: Final = 2000
 _UNKNOWN: Final = 65535
 
 
-def packed(table: Table) -> dict[str, Any]:
-    """The table for the page's JSON: its length, and every column by name."""
-    exact = len(table) <= _EXACT_ROWS
+def packed(table: Table, *, exact: bool = False) -> dict[str, Any]:
+    """The table for the page's JSON: its length, and every column by name; ``exact`` however long it is."""
+    exact = exact or len(table) <= _EXACT_ROWS
     return {
         "length": len(table),
         "columns": {name: _column(table[name], exact) for name in table.column_names},

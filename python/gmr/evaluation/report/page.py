@@ -17,7 +17,6 @@ from gmr.evaluation.report.document import json_text, own, script_hash, text
 from gmr.evaluation.report.replay import packed_replay
 from gmr.evaluation.report.sections import clip_groups, facts, sections
 from gmr.evaluation.result import Evaluation
-from gmr.evaluation.table import Table
 
 __all__ = ["page"]
 
@@ -45,21 +44,22 @@ def page(evaluation: Evaluation) -> str:
 
 
 def _data(evaluation: Evaluation, drawn: list[Figure]) -> dict[str, Any]:
-    tables: dict[str, Table] = {
+    saved = {
         "trials": evaluation.measured.trials,
         "clips": recordings(evaluation.measured.clips),
         "jumps": flows(evaluation.measured.transitions),
     }
+    tables = {name: packed(table, exact=True) for name, table in saved.items()}
     charts: dict[str, Any] = {}
     for figure in drawn:
         named = {name: f"{figure.name}/{name}" for name in figure.data}
-        tables |= {named[name]: table for name, table in figure.data.items()}
+        tables |= {named[name]: packed(table) for name, table in figure.data.items()}
         spec = figure.dressed()
         renderer = spec.get("usermeta", {}).get("renderer", "svg")
         charts[figure.name] = {"spec": spec, "tables": named, "renderer": renderer}
     clips, groups = clip_groups(evaluation)
     return {
-        "tables": {name: packed(table) for name, table in tables.items()},
+        "tables": tables,
         "figures": charts,
         "clips": clips,
         "clipGroups": list(groups.values()),
