@@ -92,12 +92,14 @@ def _sentence(clips: Table) -> str:
         return "Nothing was played."
     half = int(np.searchsorted(np.cumsum(share), share.sum() / 2)) + 1
     never = int(np.sum(clips["played_seconds"] == 0))
-    return (
-        f"{count(half, 'clip carries', 'clips carry')} half of the playing time, "
-        f"{clips['clip'][0]} alone {percent(float(share[0]))}. "
-        f"{never:,} of {count(len(clips), 'clip')} "
-        f"{'is' if never == 1 else 'are'} never played."
+    first, part = clips["clip"][0], percent(float(share[0]))
+    carried = (
+        f"{first} carries {part} of the playing time."
+        if half == 1
+        else f"{half} clips carry half of the playing time, {first} alone {part}."
     )
+    rest = f"{never:,} of {count(len(clips), 'clip')} {'is' if never == 1 else 'are'} never played."
+    return f"{carried} {rest}"
 
 
 def _chart(bars: int, mirrored: bool) -> dict[str, Any]:

@@ -16,7 +16,7 @@ __all__ = ["KIND_LABELS", "transition_kinds"]
 KIND_LABELS: Final = {
     "inter-clip": "to another clip",
     "intra-clip": "within the clip",
-    "forced end": "forced, the clip was over",
+    "forced end": "forced by the end of a clip",
 }
 _COLUMNS: Final = ("inter_clip_per_second", "intra_clip_per_second", "forced_end_per_second")
 

@@ -86,9 +86,11 @@ def _sentence(all_flows: Table, inside: Any) -> str:
         return "There are no jumps to draw."
     start, end, count = (all_flows[name][0] for name in ("from_clip", "to_clip", "count"))
     way = f"within {start}" if start == end else f"from {start} to {end}"
+    share = float(all_flows["count"][inside].sum()) / total
+    held = "nearly all" if 0.995 <= share < 1 else percent(share)
     return (
         f"The most common jump is {way}: {int(count):,} times, {percent(int(count) / total)} of all. "
-        f"The matrix holds {percent(float(all_flows['count'][inside].sum()) / total)} of the jumps."
+        f"The matrix holds {held} of the jumps."
     )
 
 
