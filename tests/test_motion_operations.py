@@ -103,6 +103,20 @@ def test_dropped_dummies_can_be_restored(motion: Motion) -> None:
     close(restored.translations, motion.translations)
 
 
+@given(symmetric_motions(), st.data())
+def test_restored_dummies_bring_back_every_value_that_was_read(motion: Motion, data: st.DataObject) -> None:
+    part = data.draw(st.slices(motion.frame_count))
+    motion = motion.with_unit("m")
+    lean = motion.drop_dummies()
+    assert lean.restore_dummies() == motion
+    assert lean[part].restore_dummies() == motion[part]
+    assert lean.to_unit("cm").restore_dummies() == motion.to_unit("cm")
+    assert concatenate([lean, lean]).restore_dummies() == concatenate([motion, motion])
+    pair, dummies = pair_joints(motion.skeleton), find_dummies(motion)
+    if set(pair[list(dummies)].tolist()) == set(dummies):
+        assert lean.mirror().restore_dummies() == motion.mirror()
+
+
 @given(either)
 def test_a_post_rotation_file_gets_only_the_dummies_that_it_needs(motion: Motion) -> None:
     lean = motion.drop_dummies()

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.arrays import read_only
+from gmr.dummies import Dropped
 from gmr.errors import GmrError, SkeletonError
 from gmr.frames import Pose, Rows
 from gmr.motion import Motion
@@ -40,8 +41,23 @@ def concatenate(motions: Sequence[Motion]) -> Motion:
     for other in others:
         _check_alike(first, other)
     name = first.name if all(other.name == first.name for other in others) else None
-    dropped = first.dropped if all(other.dropped == first.dropped for other in others) else None
+    dropped = _joined_records([motion.dropped for motion in motions])
     return replace(first, source=_joined(motions), name=name, dropped=dropped)
+
+
+def _joined_records(records: Sequence[Dropped | None]) -> Dropped | None:
+    """What was dropped from all of them; None where that differs."""
+    first = records[0]
+    if first is None or any(record != first for record in records[1:]):
+        return None
+    rows = [record.rows for record in records if record is not None and record.rows is not None]
+    if len(rows) < len(records) or any(part.layout != rows[0].layout for part in rows):
+        return first.without_rows()
+    return replace(
+        first,
+        before=_joined_records([record.before for record in records if record is not None]),
+        rows=Rows(read_only(np.concatenate([part.values for part in rows])), rows[0].layout),
+    )
 
 
 def _joined(motions: Sequence[Motion]) -> Rows | Pose:

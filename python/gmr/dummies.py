@@ -11,7 +11,7 @@ Source: the General Motion Representation, dummy joints.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -38,7 +38,9 @@ class Dropped:
         skeleton: with the dummies, in the motion's own unit and on its own side.
         layout: its channels.
         translated: the joints of it that had a translation per frame.
+        dummies: the joints of it that were dropped.
         before: what had been dropped earlier.
+        rows: the frames as they were read, as long as nothing but their choice, side or unit has changed.
     """
 
     skeleton: Skeleton
@@ -46,11 +48,24 @@ class Dropped:
     translated: tuple[int, ...]
     dummies: tuple[int, ...]
     before: Dropped | None
+    rows: Rows | None = field(default=None, compare=False)
 
-    def on(self, change: Callable[[Skeleton], Skeleton]) -> Dropped:
-        """The same record for a motion whose skeleton was changed."""
-        before = None if self.before is None else self.before.on(change)
-        return replace(self, skeleton=change(self.skeleton), before=before)
+    def on(self, skeleton: Callable[[Skeleton], Skeleton], rows: Callable[[Rows], Rows | None]) -> Dropped:
+        """The same record for a motion whose skeleton or frames were changed in this way."""
+        return replace(
+            self,
+            skeleton=skeleton(self.skeleton),
+            before=None if self.before is None else self.before.on(skeleton, rows),
+            rows=None if self.rows is None else rows(self.rows),
+        )
+
+    def frames(self, part: slice) -> Dropped:
+        """The same record for some of the frames."""
+        return self.on(lambda skeleton: skeleton, lambda rows: rows.frames(part))
+
+    def without_rows(self) -> Dropped:
+        """The same record for a motion whose frames are others now."""
+        return self.on(lambda skeleton: skeleton, lambda rows: None)
 
 
 def find_dummies(motion: Motion) -> tuple[int, ...]:
@@ -106,7 +121,14 @@ def drop_dummies(motion: Motion) -> Motion:
             _renumbering(skeleton.joint_count, kept)[pose.translated[moved]],
             read_only(np.ascontiguousarray(pose.translations[:, moved])),
         ),
-        dropped=Dropped(skeleton, pose.layout, tuple(pose.translated.tolist()), dummies, motion.dropped),
+        dropped=Dropped(
+            skeleton,
+            pose.layout,
+            tuple(pose.translated.tolist()),
+            dummies,
+            motion.dropped,
+            motion.source if isinstance(motion.source, Rows) else None,
+        ),
     )
 
 
@@ -114,11 +136,14 @@ def restore_dummies(motion: Motion) -> Motion:
     """The motion with the joints that :func:`drop_dummies` removed, where they were, turning as they did.
 
     Returns:
-        A motion on the skeleton that it had before; the same motion where nothing was dropped.
+        A motion on the skeleton that it had before, with the values that were read as long as frames were
+        only chosen, mirrored or rescaled since; the same motion where nothing was dropped.
     """
     record = motion.dropped
     if record is None:
         return motion
+    if record.rows is not None:
+        return replace(motion, skeleton=record.skeleton, source=record.rows, dropped=record.before)
     skeleton, pose = record.skeleton, motion.pose
     rotations = pose.rotations.copy()
     gone = set(record.dummies)

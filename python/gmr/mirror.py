@@ -51,9 +51,13 @@ def mirror(motion: Motion, pairs: Mapping[str, str] | Iterable[tuple[str, str]] 
 def _mirrored_rows(motion: Motion, rows: Rows, pairs: Pairs) -> Motion:
     """Columns of the two sides exchanged: x positions and the angles about y and z change sign."""
     exchange = _exchange(motion.skeleton, rows.layout, pairs)
+    return replace(motion, skeleton=exchange.skeleton, source=_exchanged(rows, exchange))
+
+
+def _exchanged(rows: Rows, exchange: _Exchange) -> Rows:
     values = rows.values.take(exchange.columns, axis=1)
     values *= exchange.signs
-    return replace(motion, skeleton=exchange.skeleton, source=Rows(read_only(values), exchange.layout))
+    return Rows(read_only(values), exchange.layout)
 
 
 class _Exchange(NamedTuple):
@@ -97,7 +101,7 @@ def _mirrored_pose(motion: Motion, pose: Pose, pairs: Pairs) -> Motion:
         read_only(pose.translations * _POINT),
         None if pose.layout is None else _mirrored_layout(pose.layout, pair),
     )
-    dropped = None if motion.dropped is None else _mirrored_record(motion.dropped, levels[1:])
+    dropped = None if motion.dropped is None else _mirrored_record(motion.dropped, levels[1:], pairs)
     return replace(motion, skeleton=_mirrored_skeleton(skeleton, pair), source=source, dropped=dropped)
 
 
@@ -161,13 +165,21 @@ def _mirrored_layout(layout: ChannelLayout, pair: NDArray[np.int32]) -> ChannelL
     return replace(layout, names=tuple(layout.names[image] for image in pair))
 
 
-def _mirrored_record(record: Dropped, levels: list[tuple[Skeleton, NDArray[np.int32]]]) -> Dropped:
+def _mirrored_record(
+    record: Dropped, levels: list[tuple[Skeleton, NDArray[np.int32]]], pairs: Pairs
+) -> Dropped:
     """What was dropped, mirrored, so that it can still be brought back."""
     skeleton, pair = levels[0]
+    mirrored = _mirrored_skeleton(skeleton, pair)
+    rows = record.rows
+    if rows is not None:
+        exchange = _exchange(skeleton, rows.layout, pairs)
+        rows = _exchanged(rows, exchange) if exchange.skeleton == mirrored else None
     return Dropped(
-        skeleton=_mirrored_skeleton(skeleton, pair),
+        skeleton=mirrored,
         layout=None if record.layout is None else _mirrored_layout(record.layout, pair),
         translated=tuple(pair[list(record.translated)].tolist()),
         dummies=tuple(sorted(pair[list(record.dummies)].tolist())),
-        before=None if record.before is None else _mirrored_record(record.before, levels[1:]),
+        before=None if record.before is None else _mirrored_record(record.before, levels[1:], pairs),
+        rows=rows,
     )

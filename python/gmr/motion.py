@@ -49,7 +49,8 @@ class Motion:
     name: str | None = None
     """Name of the file it was read from."""
     dropped: Dropped | None = field(default=None)
-    """What :meth:`drop_dummies` removed, so that a file can be given it back."""
+    """What :meth:`drop_dummies` removed, so that it can come back. Whoever puts other frames on this skeleton
+    gives None here, or what was removed from those."""
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.frame_time) and self.frame_time >= 0):
@@ -228,7 +229,9 @@ class Motion:
         if not isinstance(part, slice):
             raise TypeError(f"a motion is cut by a slice: motion[{part}:{part} + 1] is the frame {part!r}")
         _, _, step = part.indices(self.frame_count)
-        cut = replace(self, source=self.source.frames(part), frame_time=self.frame_time * abs(step))
+        dropped = None if self.dropped is None else self.dropped.frames(part)
+        frame_time = self.frame_time * abs(step)
+        cut = replace(self, source=self.source.frames(part), frame_time=frame_time, dropped=dropped)
         if isinstance(self.source, Rows) and "pose" in self.__dict__:
             cut.__dict__["pose"] = self.pose.frames(part)
         return cut

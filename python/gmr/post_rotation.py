@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gmr.arrays import read_only
 from gmr.channels import ChannelLayout, turning_freely
@@ -72,10 +73,11 @@ def _renumbered(motion: Motion, pose: Pose, layout: ChannelLayout) -> Motion:
 
 def _needed_only(motion: Motion, dummies: Sequence[int]) -> Motion:
     """The motion, whose layout fits, without those ``dummies`` that the post-rotation form can do without."""
-    layout, pose = cast(ChannelLayout, motion.layout), motion.pose
+    layout = cast(ChannelLayout, motion.layout)
     names, parents = list(layout.names), list(layout.parents)
     children = [set(joints) for joints in motion.skeleton.children]
-    rotations = pose.rotations.copy()
+    rotations = motion.rotations.copy()
+    composed = False
     for dummy in dummies:
         parent = parents[dummy]
         above, own = layout.owned_slots[[parent, dummy]]
@@ -85,6 +87,7 @@ def _needed_only(motion: Motion, dummies: Sequence[int]) -> Motion:
         if turns:
             rotations[:, above] = multiply(rotations[:, above], rotations[:, own])
             names[parent] = turning_freely(names[parent])
+            composed = True
         for child in children[dummy]:
             parents[child] = parent
         parents[dummy] = _GONE
@@ -96,15 +99,33 @@ def _needed_only(motion: Motion, dummies: Sequence[int]) -> Motion:
         tuple(place[parents[joint]] for joint in kept),
         layout.adds_offset,
     )
-    owners = [kept[joint] for joint in lean.slot_joints.tolist()]
-    staying = [k for k, joint in enumerate(pose.translated.tolist()) if joint in place]
-    source = Pose(
-        read_only(rotations.take(layout.owned_slots[owners], axis=1)),
-        np.array([place[joint] for joint in pose.translated[staying].tolist()], np.int32),
-        read_only(np.ascontiguousarray(pose.translations[:, staying])),
+    if isinstance(motion.source, Rows) and not composed:
+        source: Rows | Pose = _columns_of(motion.source, kept, lean)
+    else:
+        source = _slots_of(motion, rotations, kept, lean)
+    return replace(motion, skeleton=_skeleton_of(motion.skeleton, lean, kept), source=source)
+
+
+def _columns_of(rows: Rows, kept: Sequence[int], lean: ChannelLayout) -> Rows:
+    """The values of the kept joints as they were read."""
+    starts = rows.layout.starts
+    columns = [column for joint in kept for column in range(starts[joint], starts[joint + 1])]
+    return Rows(read_only(rows.values.take(columns, axis=1)), lean)
+
+
+def _slots_of(
+    motion: Motion, rotations: NDArray[np.float64], kept: Sequence[int], lean: ChannelLayout
+) -> Pose:
+    """The rotations and translations of the kept joints."""
+    place = {joint: k for k, joint in enumerate(kept)}
+    owned = cast(ChannelLayout, motion.layout).owned_slots
+    staying = [k for k, joint in enumerate(motion.translated.tolist()) if joint in place]
+    return Pose(
+        read_only(rotations.take([owned[kept[joint]] for joint in lean.slot_joints.tolist()], axis=1)),
+        np.array([place[joint] for joint in motion.translated[staying].tolist()], np.int32),
+        read_only(motion.translations.take(staying, axis=1)),
         lean,
     )
-    return replace(motion, skeleton=_skeleton_of(motion.skeleton, lean, kept), source=source)
 
 
 def _skeleton_of(skeleton: Skeleton, layout: ChannelLayout, kept: Sequence[int]) -> Skeleton:

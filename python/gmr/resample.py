@@ -53,16 +53,26 @@ def resample(motion: Motion, fps: float) -> Motion:
         raise GmrError(
             f"{motion.name or 'this motion'} has a frame time of 0, so it has no rate to resample from"
         )
-    step = nominal_fps(motion) / fps
+    step = _step(motion, fps)
     if math.isclose(step, 1, rel_tol=1e-9):
         return motion
     if math.isclose(step, round(step), rel_tol=1e-9):
-        source = motion.source.frames(slice(None, None, round(step)))
-        return replace(motion, source=source, frame_time=1 / fps)
+        return replace(motion[:: round(step)], frame_time=1 / fps)
     last = max(motion.frame_count - 1, 0)
     count = math.floor(last / step * (1 + 1e-12)) + 1 if motion.frame_count else 0
     times = np.minimum(np.arange(count) * step, last)
-    return replace(motion, source=_interpolated(motion.pose, times), frame_time=1 / fps)
+    dropped = None if motion.dropped is None else motion.dropped.without_rows()
+    return replace(motion, source=_interpolated(motion.pose, times), frame_time=1 / fps, dropped=dropped)
+
+
+def _step(motion: Motion, fps: float) -> float:
+    """Old frames from a new one to the next; whole, or one part of a whole, where either rate makes it so."""
+    steps = [motion.fps / fps, nominal_fps(motion) / fps]
+    for step in steps:
+        for ratio in (step, 1 / step):
+            if math.isclose(ratio, round(ratio), rel_tol=1e-9):
+                return step
+    return steps[-1]
 
 
 def _interpolated(pose: Pose, times: NDArray[np.float64]) -> Pose:

@@ -70,14 +70,20 @@ def _scaled(motion: Motion, factor: float) -> Motion:
     """The motion with every length multiplied by ``factor``."""
     source = motion.source
     if isinstance(source, Rows):
-        lengths = np.where(source.layout.column_turns, 1.0, factor)
-        frames: Rows | Pose = replace(source, values=read_only(source.values * lengths))
+        frames: Rows | Pose = _scaled_rows(source, factor)
     else:
         frames = replace(source, translations=read_only(source.translations * factor))
-    dropped = (
-        None if motion.dropped is None else motion.dropped.on(lambda joints: _scaled_offsets(joints, factor))
-    )
+    dropped = motion.dropped
+    if dropped is not None:
+        dropped = dropped.on(
+            lambda skeleton: _scaled_offsets(skeleton, factor), lambda rows: _scaled_rows(rows, factor)
+        )
     return replace(motion, skeleton=_scaled_offsets(motion.skeleton, factor), source=frames, dropped=dropped)
+
+
+def _scaled_rows(rows: Rows, factor: float) -> Rows:
+    lengths = np.where(rows.layout.column_turns, 1.0, factor)
+    return replace(rows, values=read_only(rows.values * lengths))
 
 
 @lru_cache(maxsize=16)  # the files of a folder mostly share one skeleton
