@@ -4,16 +4,25 @@
 //! position is its parent's plus its bone's vector turned by the bone's slot, `P_j = P_parent(j) + W_s(j) t_j`; a
 //! root's position is its translation. Source: the General Motion Representation.
 //!
-//! [`scalar`] is the definition, one frame at a time.
+//! `scalar` is the definition, one frame at a time; `block` does the same for as many frames at once as a register
+//! holds, and every instruction set gives the same bits.
 
+use std::sync::Mutex;
+
+use crate::Isa;
 use crate::error::{JobError, ShapeError};
-use crate::lanes::Real;
+use crate::lanes::{Real, cache};
+use crate::parallel::{for_each_piece, thread_count};
 use crate::rotation::EulerColumns;
 use crate::skeleton::Topology;
 
+mod block;
 mod plan;
-pub mod scalar;
+mod scalar;
+#[cfg(test)]
+mod tests;
 
+use block::Frames;
 use plan::Plan;
 
 /// Where the rotations and translations of each frame come from.
@@ -84,16 +93,61 @@ pub fn forward_kinematics<T: Real>(
     job: &ForwardKinematics<'_, T>,
     world: World<'_, T>,
 ) -> Result<(), JobError> {
+    forward_kinematics_on(Isa::current(), job, world)
+}
+
+/// [`forward_kinematics`] on a given instruction set. All give the same bits.
+///
+/// # Errors
+/// As there; and when this machine cannot run `isa`.
+pub fn forward_kinematics_on<T: Real>(
+    isa: Isa,
+    job: &ForwardKinematics<'_, T>,
+    world: World<'_, T>,
+) -> Result<(), JobError> {
+    if !isa.is_available() {
+        return Err(JobError::Isa(isa));
+    }
     let plan = Plan::new(job, world.positions.is_some(), world.rotations.is_some())?;
     check_poses(job)?;
+    let (position_width, rotation_width) = (plan.joints_out.len() * 3, plan.slots_out.len() * 4);
     if let Some(positions) = &world.positions {
-        ShapeError::check("positions", job.frame_count * plan.joints_out.len() * 3, positions.len())?;
+        ShapeError::check("positions", job.frame_count * position_width, positions.len())?;
     }
     if let Some(rotations) = &world.rotations {
-        ShapeError::check("rotations out", job.frame_count * plan.slots_out.len() * 4, rotations.len())?;
+        ShapeError::check("rotations out", job.frame_count * rotation_width, rotations.len())?;
     }
-    scalar::run(job, &plan, world);
+
+    let is_large = world.positions.as_deref().is_some_and(cache::is_large)
+        || world.rotations.as_deref().is_some_and(cache::is_large);
+    let piece = if thread_count(job.threads, usize::MAX) == 1 { job.frame_count } else { FRAMES_PER_PIECE };
+    let positions = cut(world.positions, piece * position_width);
+    let rotations = cut(world.rotations, piece * rotation_width);
+    for_each_piece(job.frame_count.div_ceil(piece.max(1)), job.threads, |index| {
+        let frames = index * piece..job.frame_count.min((index + 1) * piece);
+        let world = World { positions: take(&positions, index), rotations: take(&rotations, index) };
+        match isa {
+            Isa::Scalar => scalar::run(job, &plan, frames, world),
+            _ => T::dispatch(isa, Frames { job, plan: &plan, frames, world, is_large }),
+        }
+    });
     Ok(())
+}
+
+/// What a thread takes at a time: a whole number of blocks of every instruction set.
+const FRAMES_PER_PIECE: usize = 1024;
+
+/// A piece of an array, until a thread takes it.
+type Piece<'a, T> = Mutex<Option<&'a mut [T]>>;
+
+fn cut<T>(array: Option<&mut [T]>, length: usize) -> Vec<Piece<'_, T>> {
+    array.map_or(vec![], |array| {
+        array.chunks_mut(length.max(1)).map(|piece| Mutex::new(Some(piece))).collect()
+    })
+}
+
+fn take<'a, T>(pieces: &[Piece<'a, T>], index: usize) -> Option<&'a mut [T]> {
+    pieces.get(index)?.lock().ok()?.take()
 }
 
 fn check_poses<T: Real>(job: &ForwardKinematics<'_, T>) -> Result<(), JobError> {

@@ -1,22 +1,30 @@
 //! The definition of forward kinematics: one frame after the other, in plain numbers.
 
+use std::ops::Range;
+
 use super::plan::{Bone, Plan};
 use super::{ForwardKinematics, Pose, World};
 use crate::lanes::Real;
 use crate::rotation::{multiply, normalize, rotate};
 
-pub(super) fn run<T: Real>(job: &ForwardKinematics<'_, T>, plan: &Plan<T>, mut world: World<'_, T>) {
+/// Works on `frames`; `world` has room for these only.
+pub(super) fn run<T: Real>(
+    job: &ForwardKinematics<'_, T>,
+    plan: &Plan<T>,
+    frames: Range<usize>,
+    mut world: World<'_, T>,
+) {
     let mut rotations = vec![[T::ZERO; 4]; plan.turns.len()];
     let mut positions = vec![[T::ZERO; 3]; plan.bones.len()];
-    for frame in 0..job.frame_count {
+    for (row, frame) in frames.enumerate() {
         solve(job, plan, frame, &mut rotations, &mut positions);
         if let Some(out) = &mut world.positions {
-            let row = &mut out.as_chunks_mut::<3>().0[frame * plan.joints_out.len()..];
-            row.iter_mut().zip(&plan.joints_out).for_each(|(p, &bone)| *p = positions[bone]);
+            let room = &mut out.as_chunks_mut::<3>().0[row * plan.joints_out.len()..];
+            room.iter_mut().zip(&plan.joints_out).for_each(|(p, &bone)| *p = positions[bone]);
         }
         if let Some(out) = &mut world.rotations {
-            let row = &mut out.as_chunks_mut::<4>().0[frame * plan.slots_out.len()..];
-            row.iter_mut().zip(&plan.slots_out).for_each(|(q, turn)| {
+            let room = &mut out.as_chunks_mut::<4>().0[row * plan.slots_out.len()..];
+            room.iter_mut().zip(&plan.slots_out).for_each(|(q, turn)| {
                 *q = turn.map_or([T::ZERO, T::ZERO, T::ZERO, T::ONE], |turn| rotations[turn]);
             });
         }

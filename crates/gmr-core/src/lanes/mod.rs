@@ -1,18 +1,41 @@
-//! A register of numbers: the same arithmetic on one, four, eight or sixteen frames at a time.
+//! A register of numbers: the same arithmetic on one, two, four, eight or sixteen frames at a time.
 //!
-//! Kernels are written once, over [`Lanes`]; each instruction set has a file that says what a register is there.
-//! Nothing here fuses a multiplication with an addition, so every width gives the same bits.
+//! Kernels are written once, over [`Lanes`]; each instruction set has a file that says what a register is there, and
+//! [`Real::dispatch`] is the single place that chooses. Nothing here fuses a multiplication with an addition, and
+//! every operation is correctly rounded, so every instruction set gives the same bits.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use crate::Isa;
+
+#[macro_use]
+mod arithmetic;
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+pub(crate) mod cache;
+#[cfg(target_arch = "aarch64")]
+mod neon;
+mod pair;
+pub(crate) mod rows;
 mod scalar;
+#[cfg(target_arch = "x86_64")]
+mod sse2;
+#[cfg(test)]
+mod tests;
 
 /// A register that holds the same quantity of [`Lanes::WIDTH`] frames.
+///
+/// The types of an instruction set are reached through [`Real::dispatch`] only, which checks that the machine has it.
 pub trait Lanes:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// The number in one lane.
     type Real: Real;
+
+    /// The same frames in `f64`.
+    type Doubles: Doubles;
 
     /// How many frames a register holds.
     const WIDTH: usize;
@@ -20,22 +43,74 @@ pub trait Lanes:
     /// `value` in every lane.
     fn splat(value: Self::Real) -> Self;
 
-    /// The square root of every lane, correctly rounded.
+    /// The square root of every lane.
     #[must_use]
     fn sqrt(self) -> Self;
+
+    /// Four consecutive numbers of [`Lanes::WIDTH`] rows that begin `stride` apart: a register for each column.
+    fn load_columns(source: &[Self::Real], stride: usize) -> [Self; 4];
+
+    /// The inverse of [`Lanes::load_columns`].
+    fn store_columns(columns: [Self; 4], target: &mut [Self::Real], stride: usize);
+
+    /// [`Lanes::load_columns`] of `f64` rows.
+    fn load_doubles(source: &[f64], stride: usize) -> [Self::Doubles; 4];
+
+    /// Every lane to the nearest number of this width.
+    fn narrow(doubles: Self::Doubles) -> Self;
+}
+
+/// As many `f64` as a register of [`Lanes`] has frames.
+pub trait Doubles: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    /// `value` in every lane.
+    fn splat(value: f64) -> Self;
+
+    /// Whether any lane is greater than `limit`.
+    fn any_above(self, limit: f64) -> bool;
+
+    /// `change` applied to the lanes: for what is rare and need not be fast.
+    #[must_use]
+    fn changed(self, change: fn(&mut [f64])) -> Self;
+}
+
+/// Work written once for all registers of numbers `T`.
+pub trait Kernel<T: Real> {
+    /// Does the work with registers `L`. To be marked `#[inline(always)]`, as all that it calls with registers:
+    /// only then is it compiled for the instruction set that it is dispatched to.
+    fn run<L: Lanes<Real = T>>(self);
 }
 
 /// `f32` or `f64`: a number, and a register of one lane.
-pub trait Real: Lanes<Real = Self> + PartialOrd + Default + Send + Sync + 'static {
+pub trait Real:
+    Lanes<Real = Self, Doubles = f64> + Neg<Output = Self> + PartialOrd + Default + Send + Sync + 'static
+{
     /// Zero.
     const ZERO: Self;
 
     /// One.
     const ONE: Self;
 
+    /// Coefficients in x^2 of sin(x)/x for |x| <= pi/2.
+    const SINE: &'static [Self];
+
+    /// Coefficients in x^2 of cos(x) for |x| <= pi/2.
+    const COSINE: &'static [Self];
+
     /// The nearest number of this width.
     fn from_f64(value: f64) -> Self;
 
     /// The same number as `f64`.
     fn to_f64(self) -> f64;
+
+    /// Runs `kernel` with the registers of `isa`, or of [`Isa::Scalar`] where this machine cannot run `isa`.
+    fn dispatch(isa: Isa, kernel: impl Kernel<Self>);
+}
+
+/// Panics unless rows of four numbers, `stride` apart, lie in so many numbers: the check before raw loads and stores.
+#[inline(always)]
+fn check_rows(rows: usize, stride: usize, length: usize) {
+    assert!(
+        stride <= isize::MAX as usize / 64 && (rows - 1) * stride + 4 <= length,
+        "rows outside the array"
+    );
 }

@@ -5,9 +5,13 @@
 //! and computationally efficient method" (2022): an order of three different axes is one whose first and last are
 //! equal, seen through a quarter turn about the middle axis.
 
+use super::euler_block::{EulerBlock, compose};
+use super::half_angle::half_angle_of;
 use super::quaternion::{multiply_axis, normalize};
+use crate::Isa;
 use crate::error::{JobError, ShapeError};
-use crate::lanes::Real;
+use crate::lanes::rows::{SourceRows, TargetRows, blocks};
+use crate::lanes::{Kernel, Lanes, Real, cache};
 
 /// Three axes in composing order; 0: x, 1: y, 2: z.
 pub type Axes = [u8; 3];
@@ -37,14 +41,14 @@ impl EulerColumns<'_> {
 
     /// The rotation of one slot in one row of degrees.
     pub(crate) fn quaternion<T: Real>(&self, slot: usize, row: &[f64]) -> [T; 4] {
-        let mut q = [T::ZERO, T::ZERO, T::ZERO, T::ONE];
-        for (&column, &axis) in self.columns[slot].iter().zip(&self.axes[slot]) {
-            if let Ok(column) = usize::try_from(column) {
-                let (sin, cos) = (0.5 * row[column].to_radians()).sin_cos();
-                q = multiply_axis(q, axis, T::from_f64(sin), T::from_f64(cos));
-            }
-        }
-        q
+        let turns = self.turns(slot).map(|(column, axis)| (half_angle_of::<T>(row[column]), axis));
+        compose(turns).unwrap_or([T::ZERO, T::ZERO, T::ZERO, T::ONE])
+    }
+
+    /// The columns and axes of a slot's angles, in composing order.
+    pub(super) fn turns(&self, slot: usize) -> impl Iterator<Item = (usize, u8)> {
+        let turns = self.columns[slot].into_iter().zip(self.axes[slot]);
+        turns.filter_map(|(column, axis)| usize::try_from(column).ok().map(|column| (column, axis)))
     }
 }
 
@@ -74,13 +78,35 @@ pub fn euler_to_quaternions<T: Real>(
     if column_count > 0 {
         ShapeError::check("out", frame_count * slot_count * 4, out.len())?;
     }
-    for (frame, pose) in out.chunks_exact_mut((4 * slot_count).max(1)).enumerate() {
-        let row = &rows[frame * column_count..][..column_count];
-        for (slot, q) in pose.as_chunks_mut::<4>().0.iter_mut().enumerate() {
-            *q = angles.quaternion(slot, row);
+    T::dispatch(Isa::current(), Conversion { rows, column_count, angles, out });
+    Ok(())
+}
+
+/// Rows of degrees to quaternions, as many frames at once as a register holds.
+struct Conversion<'a, T> {
+    rows: &'a [f64],
+    column_count: usize,
+    angles: EulerColumns<'a>,
+    out: &'a mut [T],
+}
+
+impl<T: Real> Kernel<T> for Conversion<'_, T> {
+    #[inline(always)]
+    fn run<L: Lanes<Real = T>>(self) {
+        let slot_count = self.angles.columns.len();
+        let mut block = EulerBlock::<L>::new(self.angles, 0..slot_count, &[], self.column_count);
+        let mut rows = SourceRows::new(self.rows, self.column_count);
+        let is_large = cache::is_large(self.out);
+        let mut out = TargetRows::new(self.out, 4 * slot_count, is_large);
+        for frames in blocks::<L>(out.row_count()) {
+            block.load(&mut rows, frames.clone());
+            let (target, stride) = out.block(&frames, L::WIDTH);
+            for slot in 0..slot_count {
+                L::store_columns(block.quaternion(slot), &mut target[4 * slot..], stride);
+            }
+            out.finish(&frames, L::WIDTH);
         }
     }
-    Ok(())
 }
 
 /// Angles in degrees (F, S, 3) about the axes (S, 3) of each slot, from `quaternions` (F, S, 4), which need no unit

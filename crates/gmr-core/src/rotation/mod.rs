@@ -4,11 +4,14 @@
 //! `DQuat` become one with `.to_array()` or `.into()` and come back with `from_array`.
 
 mod euler;
+mod euler_block;
+mod half_angle;
 mod quaternion;
 mod slerp;
 
 pub(crate) use euler::check_indices;
 pub use euler::{Axes, EulerColumns, euler_to_quaternions, quaternions_to_euler};
+pub(crate) use euler_block::EulerBlock;
 pub use quaternion::{
     IDENTITY_F32, IDENTITY_F64, conjugate, dot, exp, log, multiply, multiply_axis, normalize, rotate,
 };

@@ -42,9 +42,8 @@ pub fn rotate<L: Lanes>([x, y, z, w]: [L; 4], v: [L; 3]) -> [L; 3] {
 }
 
 /// The inverse of a unit quaternion.
-#[inline(always)]
 #[must_use]
-pub fn conjugate<L: Lanes>([x, y, z, w]: [L; 4]) -> [L; 4] {
+pub fn conjugate<T: Real>([x, y, z, w]: [T; 4]) -> [T; 4] {
     [-x, -y, -z, w]
 }
 

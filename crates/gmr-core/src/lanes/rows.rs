@@ -1,0 +1,172 @@
+//! Arrays taken a block of rows at a time: what a register's lanes are filled from, and emptied into.
+//!
+//! A block that is cut short at the array's end, and rows of fewer than four numbers, go through a small copy, so that
+//! kernels see whole blocks only and every row gets the same arithmetic. Large answers go through it too, on their way
+//! past the caches.
+
+use std::ops::Range;
+
+use super::{Lanes, Real, cache};
+
+/// Consecutive ranges of [`Lanes::WIDTH`] of `count` rows, the last perhaps shorter.
+pub(crate) fn blocks<L: Lanes>(count: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..count).step_by(L::WIDTH).map(move |start| start..count.min(start + L::WIDTH))
+}
+
+/// First columns of groups of four that cover all wanted columns and stay inside a row (of at least four).
+pub(crate) fn groups(is_wanted: &[bool]) -> Vec<usize> {
+    let last = is_wanted.len().saturating_sub(4);
+    let mut groups: Vec<usize> = vec![];
+    for column in (0..is_wanted.len()).filter(|&column| is_wanted[column]) {
+        if groups.last().is_none_or(|&start| start + 4 <= column) {
+            groups.push(column.min(last));
+        }
+    }
+    groups
+}
+
+/// Rows to read.
+pub(crate) struct SourceRows<'a, T> {
+    data: &'a [T],
+    width: usize,
+    copy: Vec<T>,
+    start: usize,
+    is_copied: bool,
+}
+
+impl<'a, T: Copy + Default> SourceRows<'a, T> {
+    /// Rows of `width` numbers.
+    pub(crate) fn new(data: &'a [T], width: usize) -> Self {
+        Self { data, width, copy: vec![], start: 0, is_copied: false }
+    }
+
+    /// The rows of a block and how far apart they begin; a short block repeats its last row up to `height` rows.
+    #[inline(always)]
+    pub(crate) fn block(&mut self, rows: &Range<usize>, height: usize) -> (&[T], usize) {
+        self.start = rows.start * self.width;
+        self.is_copied = rows.len() < height || self.width < 4;
+        if self.is_copied {
+            self.copy_rows(rows, height);
+        }
+        self.current()
+    }
+
+    /// The block asked for last.
+    #[inline(always)]
+    pub(crate) fn current(&self) -> (&[T], usize) {
+        if self.is_copied { (&self.copy, self.width.max(4)) } else { (&self.data[self.start..], self.width) }
+    }
+
+    /// Asks the memory for the `part`th of `parts` shares of the block after this one.
+    #[inline(always)]
+    pub(crate) fn prefetch_next(&self, height: usize, part: usize, parts: usize) {
+        let count = height * self.width;
+        cache::prefetch(self.data, self.start + count, count, part, parts);
+    }
+
+    fn copy_rows(&mut self, rows: &Range<usize>, height: usize) {
+        let stride = self.width.max(4);
+        self.copy.resize(height * stride, T::default());
+        for (k, copy) in self.copy.chunks_exact_mut(stride).enumerate() {
+            let row = (rows.start + k).min(rows.end - 1);
+            copy[..self.width].copy_from_slice(&self.data[row * self.width..][..self.width]);
+        }
+    }
+}
+
+/// Rows to write.
+pub(crate) struct TargetRows<'a, T> {
+    data: &'a mut [T],
+    width: usize,
+    copy: Vec<T>,
+    is_streamed: bool,
+}
+
+impl<'a, T: Real> TargetRows<'a, T> {
+    /// Rows of `width` numbers; `is_large`: they are part of an answer that outgrows the caches.
+    pub(crate) fn new(data: &'a mut [T], width: usize, is_large: bool) -> Self {
+        Self { data, width, copy: vec![], is_streamed: is_large && width >= 4 }
+    }
+
+    /// How many rows there are; none where they hold no numbers.
+    pub(crate) fn row_count(&self) -> usize {
+        self.data.len().checked_div(self.width).unwrap_or(0)
+    }
+
+    /// Room for a block of `height` rows, and how far apart they begin. To be followed by [`Self::finish`].
+    #[inline(always)]
+    pub(crate) fn block(&mut self, rows: &Range<usize>, height: usize) -> (&mut [T], usize) {
+        if self.is_copied(rows, height) {
+            let stride = self.width.max(4);
+            self.copy.resize(height * stride, T::ZERO);
+            return (&mut self.copy, stride);
+        }
+        (&mut self.data[rows.start * self.width..rows.end * self.width], self.width)
+    }
+
+    /// Puts a block in its place that was not written there at once.
+    #[inline(always)]
+    pub(crate) fn finish(&mut self, rows: &Range<usize>, height: usize) {
+        if self.is_streamed {
+            let place = &mut self.data[rows.start * self.width..rows.end * self.width];
+            cache::stream(&self.copy[..place.len()], place);
+        } else if self.is_copied(rows, height) {
+            let stride = self.width.max(4);
+            for (row, copy) in rows.clone().zip(self.copy.chunks_exact(stride)) {
+                self.data[row * self.width..][..self.width].copy_from_slice(&copy[..self.width]);
+            }
+        }
+    }
+
+    fn is_copied(&self, rows: &Range<usize>, height: usize) -> bool {
+        self.is_streamed || rows.len() < height || self.width < 4
+    }
+}
+
+impl<T> Drop for TargetRows<'_, T> {
+    /// Other threads may read the rows as soon as this is gone.
+    fn drop(&mut self) {
+        if self.is_streamed {
+            cache::settle();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_of_four_cover_what_is_wanted_and_stay_inside() {
+        let wanted = |columns: &[usize], count: usize| {
+            let is_wanted: Vec<bool> = (0..count).map(|c| columns.contains(&c)).collect();
+            groups(&is_wanted)
+        };
+        assert_eq!(wanted(&[0, 1, 2, 3, 4], 5), [0, 1]);
+        assert_eq!(wanted(&[3, 4, 5, 9], 12), [3, 8]);
+        assert_eq!(wanted(&[1], 3), [0]);
+        assert_eq!(wanted(&[], 3), [0_usize; 0]);
+        assert_eq!(wanted(&[], 0), [0_usize; 0]);
+    }
+
+    #[test]
+    fn short_blocks_and_narrow_rows_come_back_as_they_went() {
+        let shapes = [(3, 9), (3, 1), (7, 9), (4, 8), (5, 0)];
+        for ((width, count), is_large) in shapes.into_iter().flat_map(|s| [(s, false), (s, true)]) {
+            let data: Vec<f32> = (0..width * count).map(|k| k as f32).collect();
+            let mut found = vec![-1.0; data.len()];
+            let mut source = SourceRows::new(&data, width);
+            let mut target = TargetRows::new(&mut found, width, is_large);
+            for start in (0..count).step_by(4) {
+                let rows = start..count.min(start + 4);
+                let (from, stride) = source.block(&rows, 4);
+                let (to, same_stride) = target.block(&rows, 4);
+                assert_eq!(stride, same_stride);
+                to[..stride * 4].copy_from_slice(&from[..stride * 4]);
+                target.finish(&rows, 4);
+            }
+            drop(target);
+            assert_eq!(found, data);
+        }
+    }
+}

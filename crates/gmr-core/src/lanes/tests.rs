@@ -1,0 +1,91 @@
+//! Every instruction set of this machine moves and computes as plain numbers do.
+
+use super::{Doubles, Kernel, Lanes, Real};
+use crate::Isa;
+
+/// What each of some rows of four numbers becomes in a register's lane, and its way back into memory.
+struct Trip<'a, T> {
+    source: &'a [T],
+    doubles: &'a [f64],
+    stride: usize,
+    target: &'a mut [T],
+    changed: &'a mut [T],
+}
+
+impl<T: Real> Kernel<T> for Trip<'_, T> {
+    #[inline(always)]
+    fn run<L: Lanes<Real = T>>(self) {
+        for start in (0..32).step_by(L::WIDTH) {
+            let at = start * self.stride;
+            let [x, y, z, w] = L::load_columns(&self.source[at..], self.stride);
+            L::store_columns([x, y, z, w], &mut self.target[at..], self.stride);
+            let [a, b, c, d] = L::load_doubles(&self.doubles[at..], self.stride);
+            let root = L::narrow(a * b + (c - d).changed(|v| v.iter_mut().for_each(|v| *v *= 3.0))).sqrt();
+            let same = [x + y, x * y - z, w / y, root + L::splat(T::ONE)];
+            L::store_columns(same, &mut self.changed[at..], self.stride);
+        }
+    }
+}
+
+fn trip<T: Real>(isa: Isa, stride: usize) -> (Vec<u64>, Vec<u64>, Vec<u64>) {
+    let doubles: Vec<f64> =
+        (0..32 * stride + 4).map(|k| 1.0 + (k as f64 * 0.618).fract() + k as f64).collect();
+    let source: Vec<T> = doubles.iter().map(|&x| T::from_f64(x)).collect();
+    let (mut target, mut changed) = (vec![T::ZERO; source.len()], vec![T::ZERO; source.len()]);
+    T::dispatch(
+        isa,
+        Trip { source: &source, doubles: &doubles, stride, target: &mut target, changed: &mut changed },
+    );
+    let bits = |v: Vec<T>| v.into_iter().map(|x| x.to_f64().to_bits()).collect();
+    (bits(source), bits(target), bits(changed))
+}
+
+#[test]
+fn every_instruction_set_loads_stores_and_computes_as_plain_numbers_do() {
+    for stride in [4, 5, 11, 64] {
+        let (plain_f32, plain_f64) = (trip::<f32>(Isa::Scalar, stride), trip::<f64>(Isa::Scalar, stride));
+        for row in 0..32 {
+            assert_eq!(plain_f32.0[row * stride..][..4], plain_f32.1[row * stride..][..4]);
+        }
+        for isa in Isa::available() {
+            assert_eq!(trip::<f32>(isa, stride), plain_f32, "{isa}, stride {stride}");
+            assert_eq!(trip::<f64>(isa, stride), plain_f64, "{isa}, stride {stride}");
+        }
+    }
+}
+
+struct Above<'a>(usize, f64, &'a mut bool);
+
+impl Kernel<f32> for Above<'_> {
+    #[inline(always)]
+    fn run<L: Lanes<Real = f32>>(self) {
+        let mut rows = [0.0; 4 * 16];
+        rows[4 * (self.0 % L::WIDTH)] = self.1;
+        let [lanes, ..] = L::load_doubles(&rows, 4);
+        *self.2 = lanes.any_above(1.0);
+    }
+}
+
+#[test]
+fn a_large_number_is_seen_in_any_lane_and_nan_is_none() {
+    for isa in Isa::available() {
+        for lane in 0..16 {
+            for (value, expected) in [(2.0, true), (f64::INFINITY, true), (1.0, false), (f64::NAN, false)] {
+                let mut found = !expected;
+                f32::dispatch(isa, Above(lane, value, &mut found));
+                assert_eq!(found, expected, "{isa}, lane {lane}, {value}");
+            }
+        }
+    }
+}
+
+#[test]
+#[should_panic]
+fn rows_outside_the_array_are_never_touched() {
+    let mut found = [0.0_f32; 8];
+    let source = [0.0_f32; 4];
+    f32::dispatch(
+        Isa::best(),
+        Trip { source: &source, doubles: &[0.0; 200], stride: 4, target: &mut found, changed: &mut [] },
+    );
+}
