@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -75,6 +76,11 @@ class Pose:
 
     def __len__(self) -> int:
         return len(self.translations)
+
+    @cached_property
+    def single(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """Rotations and translations in float32, for kernels that are asked for it again and again."""
+        return self.rotations.astype(np.float32), self.translations.astype(np.float32)
 
     def frames(self, part: slice) -> Pose:
         """Some of the frames; consecutive ones share memory."""

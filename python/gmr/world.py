@@ -73,9 +73,10 @@ def _forward_kinematics(
         )  # fmt: skip
         return
     dtype = (positions if positions is not None else rotations).dtype  # type: ignore[union-attr]
+    turns, moves = source.single if dtype == np.float32 else (source.rotations, source.translations)
     _core.forward_kinematics(
-        skeleton.topology, source.rotations.astype(dtype, copy=False), source.translated,
-        source.translations.astype(dtype, copy=False), skeleton.offsets.astype(dtype, copy=False), *wanted,
+        skeleton.topology, turns, source.translated, moves, skeleton.offsets.astype(dtype, copy=False),
+        *wanted,
     )  # fmt: skip
 
 
