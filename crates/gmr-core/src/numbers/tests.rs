@@ -133,6 +133,19 @@ fn extent(text: &str) -> (bool, usize, i32) {
 }
 
 #[test]
+fn every_length_and_every_place_of_the_point_is_read_alike() {
+    for length in 1..20 {
+        for point in 0..=length {
+            let digits = &"1234567890987654321"[..length];
+            let token = format!("{}.{}", &digits[..point], &digits[point..]);
+            for token in [digits, &token, &format!("-{token}")] {
+                assert_eq!(read_one(token), Some(token.parse::<f64>().unwrap().to_bits()), "{token}");
+            }
+        }
+    }
+}
+
+#[test]
 fn blank_lines_tabs_and_all_line_ends_are_no_values() {
     let text = b"\r\n\t 1.5\t-2  \r\n\r\n \t\n3 4.25 \r5. .5\n\n \0\0\x1a\n\0";
     let (values, read) = read_on(Isa::best(), text, 2, 9);
