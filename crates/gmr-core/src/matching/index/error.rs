@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::Isa;
 use crate::error::ShapeError;
 
 /// Why an index cannot be built, or a query cannot be answered.
@@ -36,6 +37,11 @@ pub enum IndexError {
     },
     /// The cost that hits must stay below is NaN.
     MaxCost,
+    /// This machine cannot run what the index was to be built for.
+    Isa {
+        /// What it was to be built for.
+        asked: Isa,
+    },
 }
 
 impl fmt::Display for IndexError {
@@ -55,6 +61,10 @@ impl fmt::Display for IndexError {
             }
             Self::MaxCost => {
                 write!(f, "the cost to stay below is NaN; give a number, or infinity for no limit")
+            }
+            Self::Isa { asked } => {
+                let known: Vec<_> = Isa::available().map(Isa::name).collect();
+                write!(f, "no index can be built for {asked} here; this machine runs {}", known.join(", "))
             }
         }
     }

@@ -6,16 +6,32 @@
 
 use std::ops::Range;
 
+mod aligned;
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 mod batch;
 mod best;
 pub mod brute_force;
+mod build;
 mod error;
+#[cfg(target_arch = "aarch64")]
+mod neon;
+mod scalar;
+#[cfg(target_arch = "x86_64")]
+mod sse2;
+mod traverse;
+mod tree;
 
 pub use batch::Batch;
 pub use error::IndexError;
 
+use crate::Isa;
 use best::{Best, Nearest, Ranked};
+use build::Rows;
 use error::{check_query, check_rows};
+use tree::Tree;
 
 /// A frame and what it costs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,9 +90,22 @@ impl<'a> Query<'a> {
 pub struct Index {
     dims: usize,
     frame_count: usize,
-    frames: Vec<u32>,
-    features: Vec<f32>,
-    tags: Vec<u32>,
+    candidate_count: usize,
+    layout: Layout,
+}
+
+/// The tree that suits an instruction set.
+#[derive(Debug, Clone)]
+enum Layout {
+    Scalar(Tree<8>),
+    #[cfg(target_arch = "x86_64")]
+    Sse2(Tree<4>),
+    #[cfg(target_arch = "x86_64")]
+    Avx2(avx2::Avx2, Tree<8>),
+    #[cfg(target_arch = "x86_64")]
+    Avx512(avx512::Avx512, Tree<16>),
+    #[cfg(target_arch = "aarch64")]
+    Neon(Tree<4>),
 }
 
 impl Index {
@@ -94,10 +123,38 @@ impl Index {
         tags: Option<&[u32]>,
     ) -> Result<Self, IndexError> {
         check_rows(features, dims, candidates, tags)?;
-        let frames: Vec<u32> = (0..candidates.len() as u32).filter(|&f| candidates[f as usize]).collect();
-        let rows = frames.iter().flat_map(|&f| &features[f as usize * dims..][..dims]).copied().collect();
-        let tags = frames.iter().map(|&f| tags.map_or(0, |tags| tags[f as usize])).collect();
-        Ok(Self { dims, frame_count: candidates.len(), frames, features: rows, tags })
+        Self::build_for(Isa::current(), features, dims, candidates, tags)
+    }
+
+    /// As [`Index::build`], for an instruction set other than the process's own.
+    ///
+    /// # Errors
+    /// As [`Index::build`].
+    pub fn build_for(
+        isa: Isa,
+        features: &[f32],
+        dims: usize,
+        candidates: &[bool],
+        tags: Option<&[u32]>,
+    ) -> Result<Self, IndexError> {
+        check_rows(features, dims, candidates, tags)?;
+        let rows = Rows { features, dims, candidates, tags };
+        let layout = match isa {
+            Isa::Scalar => Some(Layout::Scalar(rows.tree())),
+            #[cfg(target_arch = "x86_64")]
+            Isa::Sse2 => Some(Layout::Sse2(rows.tree())),
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx2 => avx2::Avx2::detect().map(|avx2| Layout::Avx2(avx2, rows.tree())),
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx512 => avx512::Avx512::detect().map(|avx512| Layout::Avx512(avx512, rows.tree())),
+            #[cfg(target_arch = "aarch64")]
+            Isa::Neon => Some(Layout::Neon(rows.tree())),
+            #[allow(unreachable_patterns)]
+            _ => None,
+        };
+        let layout = layout.ok_or(IndexError::Isa { asked: isa })?;
+        let candidate_count = candidates.iter().filter(|&&candidate| candidate).count();
+        Ok(Self { dims, frame_count: candidates.len(), candidate_count, layout })
     }
 
     /// Numbers a row.
@@ -115,7 +172,7 @@ impl Index {
     /// Rows that can be found.
     #[must_use]
     pub fn candidate_count(&self) -> usize {
-        self.frames.len()
+        self.candidate_count
     }
 
     /// The best frame below `query.max_cost`, or none.
@@ -162,11 +219,16 @@ impl Index {
     }
 
     fn visit(&self, query: &Query, best: &mut impl Best) {
-        for (i, row) in self.features.chunks_exact(self.dims).enumerate() {
-            let hit = Hit { frame: self.frames[i], cost: brute_force::cost(query.features, row) };
-            if hit.beats(best.bound()) && query.admits(hit.frame, self.tags[i]) {
-                best.offer(hit);
-            }
+        match &self.layout {
+            Layout::Scalar(tree) => traverse::search(scalar::Scalar, tree, query, best),
+            #[cfg(target_arch = "x86_64")]
+            Layout::Sse2(tree) => traverse::search(sse2::Sse2, tree, query, best),
+            #[cfg(target_arch = "x86_64")]
+            Layout::Avx2(avx2, tree) => avx2.search(tree, query, best),
+            #[cfg(target_arch = "x86_64")]
+            Layout::Avx512(avx512, tree) => avx512.search(tree, query, best),
+            #[cfg(target_arch = "aarch64")]
+            Layout::Neon(tree) => traverse::search(neon::Neon, tree, query, best),
         }
     }
 }

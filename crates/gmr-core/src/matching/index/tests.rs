@@ -1,32 +1,254 @@
+use proptest::prelude::*;
+
 use super::*;
 
-/// Two rows of small whole numbers are often equal: ties everywhere.
-fn grid(frame_count: usize, dims: usize, levels: u32, seed: u32) -> Vec<f32> {
-    let mut state = seed | 1;
-    let mut next = || {
-        state ^= state << 13;
-        state ^= state >> 17;
-        state ^= state << 5;
-        (state % levels) as f32
-    };
-    (0..frame_count * dims).map(|_| next()).collect()
+/// Xorshift: the same numbers on every machine.
+struct Random(u32);
+
+impl Random {
+    fn below(&mut self, count: u32) -> u32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 17;
+        self.0 ^= self.0 << 5;
+        self.0 % count.max(1)
+    }
+
+    fn unit(&mut self) -> f32 {
+        self.below(1 << 24) as f32 / (1 << 23) as f32 - 1.0
+    }
+}
+
+/// What the numbers of a database are like.
+#[derive(Debug, Clone, Copy)]
+enum Kind {
+    /// Small whole numbers: many equal rows, many equal costs, and no rounding.
+    Whole,
+    /// Every row the same.
+    Constant,
+    /// A walk, as motion is.
+    Walk,
+    /// From numbers whose squares vanish to numbers whose squares overflow.
+    Extreme,
+    /// As different as can be from dimension to dimension.
+    Skewed,
+}
+
+const KINDS: [Kind; 5] = [Kind::Whole, Kind::Constant, Kind::Walk, Kind::Extreme, Kind::Skewed];
+
+impl Kind {
+    fn rows(self, count: usize, dims: usize, random: &mut Random) -> Vec<f32> {
+        let mut walk = vec![0.0; dims];
+        let number = |(i, at): (usize, &mut f32)| match self {
+            Kind::Whole => random.below(3) as f32,
+            Kind::Constant => 0.3,
+            Kind::Walk => {
+                *at += 0.1 * random.unit();
+                *at
+            }
+            Kind::Extreme => random.unit() * 10.0_f32.powi(random.below(60) as i32 - 30),
+            Kind::Skewed => random.unit() * 10.0_f32.powi((i % 7) as i32 - 3),
+        };
+        let mut number = number;
+        (0..count).flat_map(|_| walk.iter_mut().enumerate().map(&mut number).collect::<Vec<_>>()).collect()
+    }
+}
+
+/// A database with its indices for every instruction set of this machine.
+struct Case {
+    dims: usize,
+    features: Vec<f32>,
+    candidates: Vec<bool>,
+    tags: Vec<u32>,
+    indices: Vec<Index>,
+}
+
+impl Case {
+    fn new(kind: Kind, count: usize, dims: usize, random: &mut Random) -> Self {
+        let features = kind.rows(count, dims, random);
+        let candidates: Vec<bool> = (0..count).map(|_| random.below(8) != 0).collect();
+        let tags: Vec<u32> = (0..count).map(|_| random.below(8)).collect();
+        let build = |isa| Index::build_for(isa, &features, dims, &candidates, Some(&tags)).unwrap();
+        let indices = Isa::available().map(build).collect();
+        Self { dims, features, candidates, tags, indices }
+    }
+
+    /// A frame moved a little, exactly a frame, or a mix of two.
+    fn query_features(&self, random: &mut Random) -> Vec<f32> {
+        let count = self.candidates.len() as u32;
+        if count == 0 {
+            return vec![1.0; self.dims];
+        }
+        let mut row = || &self.features[random.below(count) as usize * self.dims..][..self.dims];
+        let (one, other) = (row(), row());
+        match random.below(3) {
+            0 => one.to_vec(),
+            1 => one.iter().map(|x| x * (1.0 + 0.01 * random.unit())).collect(),
+            _ => one.iter().zip(other).map(|(a, b)| if random.below(2) == 0 { *a } else { *b }).collect(),
+        }
+    }
+
+    /// Asks every index in every way, and holds the answers against brute force.
+    fn check(&self, random: &mut Random) {
+        let count = self.candidates.len() as u32;
+        let features = self.query_features(random);
+        let from = random.below(count);
+        let mut query = Query {
+            features: &features,
+            tags: if random.below(2) == 0 { 0 } else { random.below(8) },
+            exclude: from..from + random.below(41),
+            max_cost: f32::INFINITY,
+        };
+        let k = random.below(20) as usize;
+        let brute =
+            |query: &Query| brute_force::search(&self.features, &self.candidates, Some(&self.tags), query);
+        let ranked = brute_force::search_top(&self.features, &self.candidates, Some(&self.tags), &query, k);
+        let best = brute(&query);
+        let start = Hit {
+            frame: random.below(count),
+            cost: best.map_or(1.0, |hit| hit.cost * random.below(3) as f32),
+        };
+        query.max_cost = best.map_or(0.0, |hit| hit.cost);
+        let below_best = brute(&query);
+        for index in &self.indices {
+            query.max_cost = f32::INFINITY;
+            assert_eq!(index.search(&query).unwrap(), best);
+            let mut hits = vec![Hit { frame: 7, cost: 7.0 }; k];
+            let found = index.search_top(&query, &mut hits).unwrap();
+            assert_eq!(hits[..found], ranked[..]);
+            assert!(hits[found..].iter().all(|hit| *hit == Hit::NONE));
+            let better = best.filter(|hit| hit.beats(start)).unwrap_or(start);
+            assert_eq!(index.search_from(&query, start).unwrap(), better);
+            query.max_cost = best.map_or(0.0, |hit| hit.cost);
+            assert_eq!(index.search(&query).unwrap(), below_best);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+
+    /// 400 databases of 30 queries: 12,000, each asked in four ways on every instruction set.
+    #[test]
+    fn every_instruction_set_finds_what_brute_force_finds(
+        kind in proptest::sample::select(&KINDS),
+        count in 0_usize..700,
+        dims in 1_usize..70,
+        seed in 1_u32..,
+    ) {
+        let mut random = Random(seed);
+        let case = Case::new(kind, count, dims, &mut random);
+        (0..30).for_each(|_| case.check(&mut random));
+    }
 }
 
 #[test]
-fn the_index_finds_what_brute_force_finds() {
-    let (n, dims) = (500, 3);
-    let rows = grid(n, dims, 6, 1);
-    let candidates: Vec<bool> = (0..n).map(|i| i % 5 != 0).collect();
-    let tags: Vec<u32> = (0..n as u32).map(|i| i % 4).collect();
-    let index = Index::build(&rows, dims, &candidates, Some(&tags)).unwrap();
-    for (i, features) in grid(200, dims, 8, 2).chunks_exact(dims).enumerate() {
-        let from = i as u32;
-        let query = Query { tags: from % 4, exclude: from..from + 41, ..Query::new(features) };
-        let expected = brute_force::search(&rows, &candidates, Some(&tags), &query);
-        assert_eq!(index.search(&query).unwrap(), expected);
-        let ranked = brute_force::search_top(&rows, &candidates, Some(&tags), &query, 7);
-        let mut hits = [Hit::NONE; 7];
-        let found = index.search_top(&query, &mut hits).unwrap();
-        assert_eq!(hits[..found], ranked[..]);
+fn deep_trees_find_what_brute_force_finds() {
+    let mut random = Random(1);
+    for kind in KINDS {
+        let case = Case::new(kind, 20_000, 5, &mut random);
+        (0..40).for_each(|_| case.check(&mut random));
     }
+}
+
+#[test]
+fn many_dimensions_find_what_brute_force_finds() {
+    let mut random = Random(1);
+    for kind in KINDS {
+        let case = Case::new(kind, 300, 400, &mut random);
+        (0..20).for_each(|_| case.check(&mut random));
+    }
+}
+
+#[test]
+fn equal_rows_yield_the_lowest_candidate() {
+    let mut candidates = vec![true; 100_000];
+    candidates[..17].fill(false);
+    for isa in Isa::available() {
+        let index = Index::build_for(isa, &vec![0.3; 300_000], 3, &candidates, None).unwrap();
+        for q in [0.3, 0.1] {
+            let hit = index.search(&Query::new(&[q; 3])).unwrap().unwrap();
+            assert_eq!(hit.frame, 17);
+            assert_eq!(hit.cost.to_bits(), brute_force::cost(&[q; 3], &[0.3; 3]).to_bits());
+        }
+    }
+}
+
+#[test]
+fn a_batch_has_the_bits_of_single_queries_whatever_the_thread_count() {
+    let mut random = Random(3);
+    let case = Case::new(Kind::Walk, 5000, 27, &mut random);
+    let queries: Vec<f32> = (0..300).flat_map(|_| case.query_features(&mut random)).collect();
+    let tags: Vec<u32> = (0..300).map(|i| i % 3).collect();
+    let exclude: Vec<Range<u32>> = (0..300).map(|i| i..i + 40).collect();
+    for index in &case.indices {
+        for threads in [1, 2, 5] {
+            let batch = Batch {
+                queries: &queries,
+                count: 300,
+                tags: &tags,
+                exclude: Some(&exclude),
+                max_cost: 9.0,
+                threads,
+            };
+            let mut hits = vec![Hit::NONE; 300 * 3];
+            index.search_batch(&batch, 3, &mut hits, || true).unwrap();
+            for (i, hits) in hits.chunks(3).enumerate() {
+                let features = &queries[i * 27..][..27];
+                let query = Query { features, tags: tags[i], exclude: exclude[i].clone(), max_cost: 9.0 };
+                let mut single = [Hit::NONE; 3];
+                index.search_top(&query, &mut single).unwrap();
+                assert_eq!(hits, single);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_batch_that_is_stopped_answers_nothing_more() {
+    let index = Index::build(&[1.0, 2.0], 1, &[true; 2], None).unwrap();
+    let batch = Batch { queries: &[1.0], count: 1, tags: &[0], exclude: None, max_cost: 9.0, threads: 1 };
+    let mut hits = [Hit::NONE];
+    index.search_batch(&batch, 1, &mut hits, || false).unwrap();
+    assert_eq!(hits, [Hit::NONE]);
+}
+
+#[test]
+fn what_cannot_be_indexed_is_refused_in_words() {
+    let refusal = |features: &[f32], dims, candidates: &[bool], tags: Option<&[u32]>| {
+        Index::build(features, dims, candidates, tags).unwrap_err().to_string()
+    };
+    assert!(refusal(&[], 0, &[], None).contains("0 dimensions"));
+    assert!(refusal(&[1.0; 5], 2, &[true; 3], None).contains("features holds 5 elements where 6 are needed"));
+    assert!(refusal(&[1.0; 6], 2, &[true; 3], Some(&[0])).contains("tags holds 1"));
+    let mut features = [1.0; 6];
+    features[3] = f32::NAN;
+    assert!(refusal(&features, 2, &[true; 3], None).contains("feature 1 of frame 1 is NaN"));
+    features[3] = f32::INFINITY;
+    assert!(refusal(&features, 2, &[true; 3], None).contains("feature 1 of frame 1 is inf"));
+    assert!(
+        Index::build(&features, 2, &[true, false, true], None).is_ok(),
+        "what is no candidate may be anything"
+    );
+}
+
+#[test]
+fn what_cannot_be_asked_is_refused_in_words() {
+    let index = Index::build(&[1.0, 2.0], 2, &[true], None).unwrap();
+    let refusal = |query: &Query| index.search(query).unwrap_err().to_string();
+    assert!(refusal(&Query::new(&[1.0])).contains("query features holds 1 elements where 2 are needed"));
+    assert!(refusal(&Query::new(&[1.0, f32::NAN])).contains("feature 1 of query 0 is NaN"));
+    assert!(refusal(&Query { max_cost: f32::NAN, ..Query::new(&[1.0, 2.0]) }).contains("NaN"));
+    let start = Hit { frame: 0, cost: f32::NAN };
+    assert!(index.search_from(&Query::new(&[1.0, 2.0]), start).is_err());
+    let queries = [1.0, 2.0, 3.0, f32::INFINITY];
+    let batch = Batch { queries: &queries, count: 2, tags: &[0], exclude: None, max_cost: 1.0, threads: 1 };
+    let error = index.search_batch(&batch, 1, &mut [Hit::NONE; 2], || true).unwrap_err();
+    assert!(error.to_string().contains("feature 1 of query 1 is inf"));
+}
+
+#[test]
+fn an_instruction_set_of_another_machine_is_refused() {
+    let other = Isa::ALL.into_iter().find(|isa| !isa.is_available()).unwrap();
+    let error = Index::build_for(other, &[1.0], 1, &[true], None).unwrap_err();
+    assert!(error.to_string().contains(other.name()));
 }

@@ -1,0 +1,94 @@
+//! The kernels in NEON, which every AArch64 has: 4 lanes.
+
+use std::arch::aarch64::*;
+
+use super::traverse::Kernel;
+use super::tree::{Edges, Lanes, edges};
+
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Neon;
+
+/// The bit of each lane.
+const BITS: [u32; 4] = [1, 2, 4, 8];
+
+impl Kernel<4> for Neon {
+    type Sums = float32x4_t;
+
+    #[inline(always)]
+    fn zero(self) -> float32x4_t {
+        // SAFETY: every AArch64 has NEON.
+        unsafe { vdupq_n_f32(0.0) }
+    }
+
+    #[inline(always)]
+    fn add_costs(self, sums: float32x4_t, q: f32, row: &Lanes<4>) -> float32x4_t {
+        // SAFETY: every AArch64 has NEON; the load reads the 4 numbers of `row`.
+        unsafe {
+            let row = vld1q_f32(row.as_ptr());
+            let difference = vsubq_f32(vdupq_n_f32(q), row);
+            vaddq_f32(sums, vmulq_f32(difference, difference))
+        }
+    }
+
+    #[inline(always)]
+    fn add_distances(self, sums: float32x4_t, q: f32, row: &Lanes<4>) -> float32x4_t {
+        // SAFETY: every AArch64 has NEON; the load reads the 4 numbers of `row`.
+        unsafe {
+            let row = vld1q_f32(row.as_ptr());
+            let difference = vsubq_f32(vdupq_n_f32(q), row);
+            vfmaq_f32(sums, difference, difference)
+        }
+    }
+
+    #[inline(always)]
+    fn add_bounds(self, sums: float32x4_t, q: f32, edges: &Edges<4>) -> float32x4_t {
+        // SAFETY: every AArch64 has NEON; the load reads the 4 pairs of `edges`.
+        unsafe {
+            let q = vdupq_n_f32(q);
+            let edges = vld1q_u32(edges.as_ptr());
+            let low = vreinterpretq_f32_u32(vshlq_n_u32::<16>(edges));
+            let high = vreinterpretq_f32_u32(vandq_u32(edges, vdupq_n_u32(edges::UPPER)));
+            let difference = vsubq_f32(q, vminq_f32(vmaxq_f32(q, low), high));
+            vfmaq_f32(sums, difference, difference)
+        }
+    }
+
+    #[inline(always)]
+    fn add(self, a: float32x4_t, b: float32x4_t) -> float32x4_t {
+        // SAFETY: every AArch64 has NEON.
+        unsafe { vaddq_f32(a, b) }
+    }
+
+    #[inline(always)]
+    fn at_most(self, sums: float32x4_t, limit: f32) -> u32 {
+        // SAFETY: every AArch64 has NEON.
+        unsafe { bits_of(vcleq_f32(sums, vdupq_n_f32(limit))) }
+    }
+
+    #[inline(always)]
+    fn lowest(self, sums: float32x4_t, among: u32) -> (usize, f32) {
+        // SAFETY: every AArch64 has NEON; the load reads the 4 numbers of `BITS`.
+        unsafe {
+            let bits = vld1q_u32(BITS.as_ptr());
+            let asked = vtstq_u32(vdupq_n_u32(among), bits);
+            let lowest = vminvq_f32(vbslq_f32(asked, sums, vdupq_n_f32(f32::INFINITY)));
+            let equal = bits_of(vceqq_f32(sums, vdupq_n_f32(lowest))) & among;
+            (equal.trailing_zeros() as usize, lowest)
+        }
+    }
+
+    #[inline(always)]
+    fn fetch<T>(self, _block: &[T]) {
+        // The instruction has no stable name in Rust yet; the processor's own prefetching must do.
+    }
+}
+
+/// One bit for each lane that is all ones.
+#[inline(always)]
+fn bits_of(lanes: uint32x4_t) -> u32 {
+    // SAFETY: every AArch64 has NEON; the load reads the 4 numbers of `BITS`.
+    unsafe {
+        let bits = vld1q_u32(BITS.as_ptr());
+        vaddvq_u32(vandq_u32(lanes, bits))
+    }
+}

@@ -1,0 +1,83 @@
+//! The kernels in SSE2, which every x86-64 has: 4 lanes.
+
+use std::arch::x86_64::*;
+
+use super::traverse::Kernel;
+use super::tree::{Edges, Lanes, edges};
+
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sse2;
+
+impl Kernel<4> for Sse2 {
+    type Sums = __m128;
+
+    #[inline(always)]
+    fn zero(self) -> __m128 {
+        // SAFETY: every x86-64 has SSE2.
+        unsafe { _mm_setzero_ps() }
+    }
+
+    #[inline(always)]
+    fn add_costs(self, sums: __m128, q: f32, row: &Lanes<4>) -> __m128 {
+        // SAFETY: every x86-64 has SSE2; the load reads the 4 numbers of `row`.
+        unsafe {
+            let row = _mm_loadu_ps(row.as_ptr());
+            let difference = _mm_sub_ps(_mm_set1_ps(q), row);
+            _mm_add_ps(sums, _mm_mul_ps(difference, difference))
+        }
+    }
+
+    #[inline(always)]
+    fn add_distances(self, sums: __m128, q: f32, row: &Lanes<4>) -> __m128 {
+        self.add_costs(sums, q, row)
+    }
+
+    #[inline(always)]
+    fn add_bounds(self, sums: __m128, q: f32, edges: &Edges<4>) -> __m128 {
+        // SAFETY: every x86-64 has SSE2; the load reads the 4 pairs of `edges`.
+        unsafe {
+            let q = _mm_set1_ps(q);
+            let edges = _mm_loadu_si128(edges.as_ptr().cast());
+            let low = _mm_castsi128_ps(_mm_slli_epi32::<16>(edges));
+            let high = _mm_castsi128_ps(_mm_and_si128(edges, _mm_set1_epi32(edges::UPPER as i32)));
+            let difference = _mm_sub_ps(q, _mm_min_ps(_mm_max_ps(q, low), high));
+            _mm_add_ps(sums, _mm_mul_ps(difference, difference))
+        }
+    }
+
+    #[inline(always)]
+    fn add(self, a: __m128, b: __m128) -> __m128 {
+        // SAFETY: every x86-64 has SSE2.
+        unsafe { _mm_add_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn at_most(self, sums: __m128, limit: f32) -> u32 {
+        // SAFETY: every x86-64 has SSE2.
+        unsafe { _mm_movemask_ps(_mm_cmple_ps(sums, _mm_set1_ps(limit))) as u32 }
+    }
+
+    #[inline(always)]
+    fn lowest(self, sums: __m128, among: u32) -> (usize, f32) {
+        // SAFETY: every x86-64 has SSE2.
+        unsafe {
+            let bits = _mm_setr_epi32(1, 2, 4, 8);
+            let asked = _mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(among as i32), bits), bits);
+            let asked = _mm_castsi128_ps(asked);
+            let rest = _mm_andnot_ps(asked, _mm_set1_ps(f32::INFINITY));
+            let sums = _mm_or_ps(_mm_and_ps(asked, sums), rest);
+            let lowest = _mm_min_ps(sums, _mm_shuffle_ps::<0b01_00_11_10>(sums, sums));
+            let lowest = _mm_min_ps(lowest, _mm_shuffle_ps::<0b10_11_00_01>(lowest, lowest));
+            let equal = _mm_movemask_ps(_mm_cmpeq_ps(sums, lowest)) as u32 & among;
+            (equal.trailing_zeros() as usize, _mm_cvtss_f32(lowest))
+        }
+    }
+
+    #[inline(always)]
+    fn fetch<T>(self, block: &[T]) {
+        for line in (0..size_of_val(block)).step_by(64) {
+            // SAFETY: the address lies in `block`.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(block.as_ptr().cast::<i8>().add(line)) };
+        }
+    }
+}
