@@ -158,6 +158,11 @@ def test_motions_can_be_given_without_files(folder: Path, found: Evaluation) -> 
     np.testing.assert_array_equal(listed.measured.trials["offset_mean"], found.measured.trials["offset_mean"])
 
 
+def test_the_grid_can_be_an_array(folder: Path) -> None:
+    found = gmr.evaluate(folder, speeds=np.array([2.0, 1.0]), turn_rates_deg=np.zeros(1))  # type: ignore[arg-type]
+    assert found.measured.trials["speed"].tolist() == [1.0, 2.0]
+
+
 def test_open_loop_does_not_track_the_path(folder: Path) -> None:
     found = gmr.evaluate(folder, tracking="velocity", **GRID)  # type: ignore[arg-type]
     assert set(found.measured.trials["tracking"]) == {"velocity"}
@@ -231,6 +236,8 @@ def test_settings_that_make_no_sense_are_refused_before_anything_is_read(tmp_pat
         gmr.evaluate(missing, tracking="speed")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="unknown preset"):
         gmr.evaluate(missing, preset="mig2023")
+    with pytest.raises(ValueError, match="at least one speed"):
+        gmr.evaluate(missing, speeds=[])
     with pytest.raises(ValueError, match="at least 1 thread"):
         gmr.evaluate(missing, threads=0)
     with pytest.raises(gmr.FormatError, match="no such folder"):

@@ -90,7 +90,9 @@ def evaluate(
     if threads is not None and threads < 1:
         raise ValueError(f"there must be at least 1 thread, not {threads}")
     trials = constant_trials(
-        speeds or DEFAULT_SPEEDS, turn_rates_deg or DEFAULT_TURN_RATES_DEG, preset or "even"
+        DEFAULT_SPEEDS if speeds is None else tuple(speeds),
+        DEFAULT_TURN_RATES_DEG if turn_rates_deg is None else tuple(turn_rates_deg),
+        preset or "even",
     )
     tell = progress or _silent
     with _format_warnings() as odd:
