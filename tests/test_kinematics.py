@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from gmr import _core
 from kinematics_oracle import Case, random_case, world
@@ -59,3 +61,60 @@ def test_a_slot_that_turns_no_bone_cannot_be_asked_for() -> None:
             topology, case.rotations, case.translated, case.translations, case.offsets,
             None, np.array([3], np.int32), None, out,
         )  # fmt: skip
+
+
+def about(axis: int, degrees: Any) -> Rotation:
+    """Turns about x, y or z."""
+    return Rotation.from_rotvec(np.outer(degrees, np.eye(3)[axis]), degrees=True)
+
+
+@st.composite
+def rows_of_a_case(draw: st.DrawFn) -> tuple[Case, dict[str, Any]]:
+    """Euler rows of any order, with missing columns and several moved joints, and the case that they mean."""
+    case = draw(cases)
+    rng = np.random.default_rng(draw(st.integers(0, 2**32)))
+    frames, slots, moved = len(case.rotations), case.slot_count, len(case.translated)
+    columns = rng.permutation(3 * (slots + moved)).astype(np.int32)
+    columns[rng.random(len(columns)) < 0.1] = -1
+    turning, moving = np.split(columns.reshape(-1, 3), [slots])
+    axes = rng.integers(0, 3, (slots, 3), np.uint8)
+    rows = rng.uniform(-400, 400, (frames, len(columns)))
+    rows[:, moving[moving >= 0]] /= 400
+    adds_offset = draw(st.booleans())
+
+    degrees = np.where(turning >= 0, rows[:, turning], 0)
+    turned = [
+        about(axis[0], step[0]) * about(axis[1], step[1]) * about(axis[2], step[2])
+        for step, axis in zip(degrees.transpose(1, 2, 0), axes.tolist(), strict=True)
+    ]
+    offsets = case.offsets[case.translated]
+    channels = np.where(moving >= 0, rows[:, moving] + (offsets if adds_offset else 0), offsets)
+    meant = replace(case, rotations=np.stack([r.as_quat() for r in turned], axis=1), translations=channels)
+    given_as = {
+        "rows": rows, "rotation_columns": turning, "rotation_axes": axes, "translated": case.translated,
+        "translation_columns": moving, "adds_offset": adds_offset, "offsets": case.offsets,
+    }  # fmt: skip
+    return meant, given_as
+
+
+@given(rows_of_a_case(), widths)
+def test_rows_of_degrees_give_what_scipy_makes_of_them(case: tuple[Case, dict[str, Any]], dtype: Any) -> None:
+    meant, given_as = case
+    expected, _ = world(meant)
+    out = np.full(expected.shape, np.nan, dtype)
+    topology = _core.Topology(meant.parents, meant.slots, meant.slot_count)
+    _core.forward_kinematics_euler(topology, **given_as, positions_out=out)
+    assert np.abs(out - expected).max() < TOLERANCE[dtype] * meant.height
+
+
+@given(cases, st.data())
+def test_a_subset_of_joints_is_a_part_of_the_whole(case: Case, data: st.DataObject) -> None:
+    whole, _, _ = run(case, np.float32)
+    joints = data.draw(st.lists(st.integers(0, len(case.parents) - 1), max_size=6))
+    part = np.empty((len(case.rotations), len(joints), 3), np.float32)
+    _core.forward_kinematics(
+        _core.Topology(case.parents, case.slots, case.slot_count), case.rotations.astype(np.float32),
+        case.translated, case.translations.astype(np.float32), case.offsets,
+        np.array(joints, np.int32), None, part,
+    )  # fmt: skip
+    np.testing.assert_array_equal(part, whole[:, joints])

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from gmr.evaluation.evaluate import evaluate
     from gmr.evaluation.result import Evaluation
     from gmr.formats import read, read_folder, write
+    from gmr.kinematics import forward_kinematics
     from gmr.motion import Motion
     from gmr.skeleton import Skeleton
 
@@ -40,6 +41,7 @@ __all__ = [
     "concatenate",
     "evaluate",
     "evaluation",
+    "forward_kinematics",
     "matching",
     "read",
     "read_folder",
@@ -54,6 +56,7 @@ _HOMES = {
     "Skeleton": "gmr.skeleton",
     "concatenate": "gmr.concatenation",
     "evaluate": "gmr.evaluation.evaluate",
+    "forward_kinematics": "gmr.kinematics",
     "read": "gmr.formats",
     "read_folder": "gmr.formats",
     "write": "gmr.formats",
