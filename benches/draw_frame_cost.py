@@ -1,6 +1,6 @@
 """Measures the cost per frame of forward kinematics from 1,000 to 1,000,000 frames and draws the curve.
 
-    python benches/draw_frame_cost.py docs/images/frame_cost.svg
+python benches/draw_frame_cost.py docs/images/frame_cost.svg
 """
 
 from __future__ import annotations
@@ -32,7 +32,12 @@ def chart(rows: Sequence[Row]) -> dict[str, Any]:
         }
         for row in rows
     ]
-    frames = {"field": "frames", "type": "quantitative", "scale": {"type": "log"}, "title": "frames in the clip"}
+    frames = {
+        "field": "frames",
+        "type": "quantitative",
+        "scale": {"type": "log"},
+        "title": "frames in the clip",
+    }
     scale = {"domain": [0, 1.2 * max(value["high"] for value in values)]}
     cost = {"field": "cost", "type": "quantitative", "title": "nanoseconds a frame", "scale": scale}
     return {

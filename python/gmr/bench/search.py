@@ -91,7 +91,7 @@ def _scipy_call(features: Floats, queries: Floats, index: _core.Index) -> Callab
 
 
 def _faiss_call(peers: Peers, features: Floats, queries: Floats) -> Callable[[], object]:
-    """FAISS's flat index on one thread, one query a call, since a character's next query needs the last answer."""
+    """FAISS's flat index, one thread and one query a call: a character's next query needs the last answer."""
     faiss: Any = peers["faiss"]
     faiss.omp_set_num_threads(1)
     flat = faiss.IndexFlatL2(features.shape[1])
