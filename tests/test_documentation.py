@@ -57,6 +57,25 @@ def test_console_examples_run(page: Path, reader_folder: Path) -> None:
             assert done.returncode == 0, f"{line}\n{done.stdout}\n{done.stderr}"
 
 
+EXAMPLES = {
+    "fastest_foot.py": ["takes"],
+    "compare_with_mirrored.py": ["takes"],
+    "drive_a_character.py": ["takes", "poses.npz"],
+}
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_example_programs_run(example: str, reader_folder: Path) -> None:
+    program = [sys.executable, str(ROOT / "examples" / example), *EXAMPLES[example]]
+    done = subprocess.run(program, cwd=reader_folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip()
+
+
+def test_every_example_program_is_run() -> None:
+    assert set(EXAMPLES) == {file.name for file in (ROOT / "examples").glob("*.py")}
+
+
 def test_there_are_examples() -> None:
     assert ROOT / "README.md" in pages_with("python")
     assert ROOT / "README.md" in pages_with("console")
