@@ -24,7 +24,7 @@ def failure_sentences(grid: Grid, regions: Sequence[Region]) -> Iterator[str]:
     for region in told:
         away = f" (mean distance from the path {_range(grid.offset[tuple(region.cells.T)])} m)"
         yield (
-            f"It fails when {_movement(grid, region)} ({count(len(region.cells), 'trial')}): "
+            f"It fails when {_movement(grid, region)} ({_trials(grid, region)}): "
             f"{_clips_there(grid, region)}, and the character {_symptom(grid, region)}"
             f"{away if grid.timed else ''}."
         )
@@ -49,6 +49,17 @@ def _movement(grid: Grid, region: Region) -> str:
         return f"going straight {at}"
     by = span(turns.min(), turns.max(), "degrees/s")
     return f"turning {region.side} by {by} {at}"
+
+
+def _trials(grid: Grid, region: Region) -> str:
+    """How many trials fail, out of those within the speeds and turn rates that the region spans."""
+    speeds, turns = grid.speeds[region.cells[:, 0]], grid.turn_rates_deg[region.cells[:, 1]]
+    sides = np.isin(np.sign(grid.turn_rates_deg), np.sign(turns))
+    steep = np.abs(grid.turn_rates_deg)
+    turning = sides & (steep >= np.abs(turns).min()) & (steep <= np.abs(turns).max())
+    fast = (grid.speeds >= speeds.min()) & (grid.speeds <= speeds.max())
+    failing, among = len(region.cells), int(fast.sum() * turning.sum())
+    return count(failing, "trial") if failing == among else f"{failing} of {count(among, 'trial')}"
 
 
 def _clips_there(grid: Grid, region: Region) -> str:
