@@ -26,7 +26,7 @@ QUERY_COUNT: Final = 1_000
 
 def near_manifold(frame_count: int) -> Iterator[Contest]:
     """Queries as a controller makes them: the pose of a row, a future of a row close by, a little noise."""
-    yield from _contests(frame_count, "near the manifold", reach=15, noise=0.02)
+    yield from _contests(frame_count, "near the manifold", reach=10, noise=0.05)
 
 
 def off_manifold(frame_count: int) -> Iterator[Contest]:
