@@ -54,6 +54,15 @@ def test_a_perfect_dataset_is_told_so() -> None:
     assert "fails" not in str(said)
 
 
+def test_a_span_with_successes_in_it_says_how_many_trials_fail_of_how_many() -> None:
+    def answer(speed: float, turn: float) -> Gait:
+        return Gait(speed, turn if abs(turn) < 75 and speed == 2.0 else 0.0)
+
+    said = judged({"straight.bvh": Arc(4.0, 2.0, 0.0)}, answer)
+    failure = next(sentence for sentence in said.sentences if sentence.startswith("It fails when"))
+    assert "by 50 to 100 degrees/s at 1 to 3 m/s (18 of 20 trials)" in failure
+
+
 def test_a_dataset_of_straight_clips_is_told_so() -> None:
     straight = {name: arc for name, arc in EVERYTHING.items() if not arc.turn_rate_deg}
     said = judged(straight, lambda speed, turn: Gait(speed, 0.0))
