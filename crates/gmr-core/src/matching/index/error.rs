@@ -91,11 +91,12 @@ pub(super) fn check_rows(
     if dims == 0 {
         return Err(IndexError::NoDimensions);
     }
-    let frame_count = candidates.len();
+    let frame_count = features.len() / dims;
     if frame_count > MOST_FRAMES {
         return Err(IndexError::TooManyFrames { found: frame_count });
     }
-    ShapeError::check("features", frame_count.saturating_mul(dims), features.len())?;
+    ShapeError::check("features", frame_count * dims, features.len())?;
+    ShapeError::check("candidates", frame_count, candidates.len())?;
     if let Some(tags) = tags {
         ShapeError::check("tags", frame_count, tags.len())?;
     }

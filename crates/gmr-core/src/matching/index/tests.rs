@@ -29,11 +29,13 @@ enum Kind {
     Walk,
     /// From numbers whose squares vanish to numbers whose squares overflow.
     Extreme,
+    /// Squares of a few times the least number there is, or of half of it.
+    Tiny,
     /// As different as can be from dimension to dimension.
     Skewed,
 }
 
-const KINDS: [Kind; 5] = [Kind::Whole, Kind::Constant, Kind::Walk, Kind::Extreme, Kind::Skewed];
+const KINDS: [Kind; 6] = [Kind::Whole, Kind::Constant, Kind::Walk, Kind::Extreme, Kind::Tiny, Kind::Skewed];
 
 impl Kind {
     fn rows(self, count: usize, dims: usize, random: &mut Random) -> Vec<f32> {
@@ -46,6 +48,7 @@ impl Kind {
                 *at
             }
             Kind::Extreme => random.unit() * 10.0_f32.powi(random.below(60) as i32 - 30),
+            Kind::Tiny => [0.0, 1.0, 1.5, 3.0][random.below(4) as usize] * 2.0_f32.powi(-75),
             Kind::Skewed => random.unit() * 10.0_f32.powi((i % 7) as i32 - 3),
         };
         let mut number = number;
@@ -218,7 +221,10 @@ fn what_cannot_be_indexed_is_refused_in_words() {
         Index::build(features, dims, candidates, tags).unwrap_err().to_string()
     };
     assert!(refusal(&[], 0, &[], None).contains("0 dimensions"));
-    assert!(refusal(&[1.0; 5], 2, &[true; 3], None).contains("features holds 5 elements where 6 are needed"));
+    assert!(refusal(&[1.0; 5], 2, &[true; 2], None).contains("features holds 5 elements where 4 are needed"));
+    assert!(
+        refusal(&[1.0; 6], 2, &[true; 2], None).contains("candidates holds 2 elements where 3 are needed")
+    );
     assert!(refusal(&[1.0; 6], 2, &[true; 3], Some(&[0])).contains("tags holds 1"));
     let mut features = [1.0; 6];
     features[3] = f32::NAN;
