@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 from pathlib import Path
 
 import numpy as np
@@ -107,6 +108,18 @@ def test_a_written_file_has_the_permissions_of_an_ordinary_one(tmp_path: Path) -
     with replacing(tmp_path / "ours") as (file,):
         file.write(b"x")
     assert (tmp_path / "ours").stat().st_mode == (tmp_path / "usual").stat().st_mode
+
+
+def test_the_permissions_of_other_files_are_left_alone_while_one_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def changed(mask: int) -> int:
+        raise AssertionError(f"the mask of every thread became {mask:o}")
+
+    monkeypatch.setattr(os, "umask", changed)
+    with replacing(tmp_path / "ours") as (file,):
+        file.write(b"x")
+    assert (tmp_path / "ours").read_bytes() == b"x"
 
 
 def test_the_same_table_gives_the_same_bytes(table: Table) -> None:

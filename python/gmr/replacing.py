@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import os
-import tempfile
+import secrets
 from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
 __all__ = ["replacing"]
+
+_NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
 
 
 @contextlib.contextmanager
@@ -30,30 +32,35 @@ def replacing(*paths: str | os.PathLike[str]) -> Iterator[tuple[BinaryIO, ...]]:
     """
     places = [Path(path) for path in paths]
     with contextlib.ExitStack() as stack:
-        files: list[BinaryIO] = []
-        for place in places:
-            file = stack.enter_context(_beside(place))
-            files.append(file)
-        yield tuple(files)
-        for file in files:
+        made = [stack.enter_context(_beside(place)) for place in places]
+        yield tuple(file for _, file in made)
+        for _, file in made:
             file.flush()
             os.fsync(file.fileno())
-        for file, place in zip(files, places, strict=True):
-            _allow_as_usual(file)
-            Path(file.name).replace(place)
+        for (path, _), place in zip(made, places, strict=True):
+            path.replace(place)
 
 
 @contextlib.contextmanager
-def _beside(place: Path) -> Iterator[BinaryIO]:
-    with tempfile.NamedTemporaryFile(dir=place.parent, prefix=f".{place.name}.", delete=False) as file:
+def _beside(place: Path) -> Iterator[tuple[Path, BinaryIO]]:
+    """A new file in the folder of ``place``; it goes when the block ends, unless it was renamed."""
+    path, descriptor = _made_beside(place)
+    with os.fdopen(descriptor, "wb") as file:
         try:
-            yield file  # type: ignore[misc]  # a wrapper of a binary file, which typeshed calls by another name
+            yield path, file
         finally:
-            Path(file.name).unlink(missing_ok=True)
+            path.unlink(missing_ok=True)
 
 
-def _allow_as_usual(file: BinaryIO) -> None:
-    """Give the permissions of an ordinary new file: a temporary one is for its owner's eyes only."""
-    mask = os.umask(0)
-    os.umask(mask)
-    Path(file.name).chmod(0o666 & ~mask)
+def _made_beside(place: Path) -> tuple[Path, int]:
+    """A file under a name that nobody has, open for writing, with the permissions of any new file.
+
+    The system takes the mask of the process from them. A module that makes temporary files gives them to
+    their owner alone, and reading the mask in order to widen them means changing it for all threads.
+    """
+    while True:
+        path = place.with_name(f".{place.name}.{secrets.token_hex(4)}")
+        try:
+            return path, os.open(path, _NEW, 0o666)
+        except FileExistsError:
+            continue
