@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from gmr import GmrError, Motion, Skeleton, SkeletonError
+from gmr import ChannelLayout, GmrError, Motion, Skeleton, SkeletonError
 from gmr.concatenation import concatenate
 from gmr.dummies import find_dummies
 from gmr.sides import pair_joints
@@ -204,6 +204,32 @@ def test_a_resampled_file_can_be_written_as_rows(motion: Motion, times: int) -> 
     close(places(again), places(fine))
 
 
+def one_joint(turns: tuple[str, ...], rotation: tuple[float, float, float, float]) -> Motion:
+    """Two frames of a root with these channels: at rest, then turned."""
+    skeleton = Skeleton.post_rotation(["Hips", "Tip"], [-1, 0], [[0, 0, 0], [0, 1, 0]])
+    layout = ChannelLayout.of(skeleton, [("Xposition", "Yposition", "Zposition", *turns), ()])
+    turned = [[(0.0, 0.0, 0.0, 1.0)], [rotation]]
+    return Motion.from_pose(skeleton, turned, np.zeros((2, 1, 3)), 0.1, layout=layout)
+
+
+@pytest.mark.parametrize("turns", [(), ("Zrotation",), ("Zrotation", "Xrotation"), ("Zrotation",) * 3])
+def test_a_turn_that_the_channels_cannot_say_is_refused(turns: tuple[str, ...]) -> None:
+    about_y = (0.0, 0.5**0.5, 0.0, 0.5**0.5)
+    motion = one_joint(turns, about_y)
+    with pytest.raises(SkeletonError, match=r"joint 'Hips' turns in frame 1 .*layout=None"):
+        _ = motion.rows
+    freed = replace(motion, source=replace(motion.pose, layout=None))
+    assert freed.rows[1].tolist() == pytest.approx([0, 0, 0, 0, 0, 90])
+
+
+def test_a_turn_that_fewer_channels_can_say_is_written() -> None:
+    about_z = (0.0, 0.0, np.sin(0.3), np.cos(0.3))
+    for turns in (("Zrotation",), ("Zrotation", "Xrotation"), ("Zrotation",) * 3):
+        rounded = tuple(np.float32(value).item() for value in about_z)
+        written = one_joint(turns, rounded).rows[1, 3:]  # type: ignore[arg-type]
+        assert written.sum() == pytest.approx(np.degrees(0.6), abs=1e-5)
+
+
 def test_a_frame_time_cut_off_in_print_counts_as_the_rate_that_was_meant() -> None:
     motion = motions_of(121, 0.0083333)
     assert motion.resample(120) is motion
@@ -231,8 +257,6 @@ def test_motions_that_are_not_alike_are_not_concatenated() -> None:
 
 def motions_of(frames: int, frame_time: float) -> Motion:
     """One joint that goes along x."""
-    from gmr import ChannelLayout, Skeleton
-
     skeleton = Skeleton.post_rotation(["Hips"], [-1], [[0, 0, 0]], turning=[0])
     layout = ChannelLayout.of(skeleton, [("Xposition",)])
     return Motion.from_rows(skeleton, layout, np.arange(float(frames))[:, None], frame_time)

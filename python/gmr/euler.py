@@ -9,12 +9,16 @@ from numpy.typing import NDArray
 
 from gmr import _core
 from gmr.arrays import read_only
-from gmr.channels import ChannelLayout
+from gmr.channels import ROTATIONS, ChannelLayout
 from gmr.errors import SkeletonError
 from gmr.frames import Pose, Rows
+from gmr.quaternions import conjugate, multiply
 from gmr.skeleton import Skeleton
 
 __all__ = ["fewer_angles", "pose_from_rows", "rows_from_pose", "translations_of_rows"]
+
+_EXACT = 1e-6
+"""Radians by which a rotation may miss what is written of it: the rounding of poses given in float32."""
 
 
 def pose_from_rows(skeleton: Skeleton, rows: Rows) -> Pose:
@@ -30,7 +34,7 @@ def rows_from_pose(skeleton: Skeleton, pose: Pose) -> Rows:
     """Rows of channels of a pose, as its layout (or the standard one) writes them.
 
     Raises:
-        SkeletonError: siblings turn independently, or a joint moves that has no position channels.
+        SkeletonError: siblings turn independently, or a joint moves or turns as its channels cannot say.
     """
     layout = pose.layout or ChannelLayout.standard(skeleton, pose.translated)
     if not layout.fits(skeleton):
@@ -39,7 +43,7 @@ def rows_from_pose(skeleton: Skeleton, pose: Pose) -> Rows:
             "Where dummy joints were dropped, restore_dummies() brings them back."
         )
     values = np.zeros((len(pose), layout.column_count))
-    _write_angles(values, layout, pose.rotations)
+    _write_angles(values, layout, skeleton, pose.rotations)
     _write_translations(values, layout, skeleton, pose)
     return Rows(read_only(values), layout)
 
@@ -56,7 +60,9 @@ def translations_of_rows(skeleton: Skeleton, rows: Rows) -> NDArray[np.float64]:
     return found
 
 
-def _write_angles(values: NDArray[np.float64], layout: ChannelLayout, rotations: NDArray[np.float64]) -> None:
+def _write_angles(
+    values: NDArray[np.float64], layout: ChannelLayout, skeleton: Skeleton, rotations: NDArray[np.float64]
+) -> None:
     """Writes the angles in degrees into the columns that the layout has for them."""
     columns, axes = layout.rotation_columns, layout.rotation_axes
     if not len(values):
@@ -66,13 +72,42 @@ def _write_angles(values: NDArray[np.float64], layout: ChannelLayout, rotations:
         chosen = rotations if len(whole) == len(columns) else rotations.take(whole, axis=1)
         angles = _core.quaternions_to_euler(chosen, np.ascontiguousarray(axes[whole]))
         values[:, columns[whole]] = angles
-    for slot in np.setdiff1d(np.arange(len(columns)), whole).tolist():
+    few = np.setdiff1d(np.arange(len(columns)), whole)
+    for slot in few.tolist():
         steps = [
             k for k in range(3) if columns[slot, k] >= 0 and (k == 0 or axes[slot, k] != axes[slot, k - 1])
         ]
         if steps:
             found = fewer_angles(rotations[:, slot], [int(axes[slot, k]) for k in steps])
             values[:, columns[slot, steps]] = np.degrees(found)
+    if len(few):
+        _check_turns(values, layout, skeleton, few, rotations[:, few])
+
+
+def _check_turns(
+    values: NDArray[np.float64],
+    layout: ChannelLayout,
+    skeleton: Skeleton,
+    slots: NDArray[np.intp],
+    rotations: NDArray[np.float64],
+) -> None:
+    """Raises where the angles written for ``slots`` are not the (F, len(slots), 4) ``rotations``."""
+    written = np.empty(rotations.shape)
+    _core.euler_to_quaternions(values, layout.rotation_columns[slots], layout.rotation_axes[slots], written)
+    missed = multiply(conjugate(written), rotations)
+    off = 2 * np.arctan2(np.linalg.norm(missed[..., :3], axis=-1), np.abs(missed[..., 3]))
+    wrong = np.argwhere(off > _EXACT)
+    if not len(wrong):
+        return
+    frame, which = wrong[0].tolist()
+    joint = layout.slot_joints[slots[which]]
+    turns = [name for name in layout.names[joint] if name.lower() in ROTATIONS]
+    raise SkeletonError(
+        f"joint '{skeleton.names[joint]}' turns in frame {frame} as its rotation channels "
+        f"({' '.join(turns) or 'none'}) cannot say: they miss it by "
+        f"{np.degrees(off[frame, which]):.3g} degrees; give it three, or the whole motion no layout "
+        "(layout=None), which writes it with the standard one."
+    )
 
 
 def fewer_angles(rotations: NDArray[np.float64], axes: Sequence[int]) -> NDArray[np.float64]:
