@@ -85,7 +85,7 @@ def test_a_dataset_of_straight_clips_is_told_so() -> None:
         "a jog (2 m/s, circles of 1.1 to 2.3 m radius) and "
         "a run (2.5 to 3 m/s, circles of 1.4 to 3.4 m radius)." in said.sentences
     )
-    assert "One side of the turns is enough when mirrored copies are used (--mirror)." in said.sentences
+    assert "With mirrored copies of the clips (--mirror), turns to one side are enough." in said.sentences
     assert "Every clip is played at least once." in said.sentences
 
 
@@ -187,6 +187,16 @@ def test_straying_from_the_path_fails_only_where_the_path_is_tracked() -> None:
     )
     lost = judged(EVERYTHING, lambda speed, turn: Gait(0.5 * speed, turn), tracking="velocity")
     assert any(text.endswith("the character goes 1 m/s too slowly.") for text in lost.sentences)
+
+
+def test_one_side_of_the_turns_is_enough_where_clips_are_mirrored() -> None:
+    clips = {"a.bvh": Arc(40.0, 1.0), "a.bvh (mirrored)": Arc(40.0, 1.0, mirrored=True)}
+    said = judged(clips, lambda speed, _: Gait(speed, 0.0))
+    assert any(
+        text.startswith("Capture next: turns to the left or to the right at a walk")
+        for text in said.sentences
+    )
+    assert "--mirror" not in str(said)
 
 
 def test_clips_that_carry_and_clips_never_played_are_named_with_their_mirrored_copies() -> None:

@@ -107,9 +107,9 @@ def capture_sentences(grid: Grid, regions: Sequence[Region], mirrored: bool) -> 
     to_mirror = [region for region in told if region.side in (LEFT_ONLY, RIGHT_ONLY) and not mirrored]
     to_capture = [region for region in told if region not in to_mirror]
     if to_capture:
-        yield f"Capture next: {'; '.join(_to_capture(grid, region) for region in to_capture)}."
+        yield f"Capture next: {'; '.join(_to_capture(grid, region, mirrored) for region in to_capture)}."
     if not mirrored and any(region.side == EITHER for region in to_capture):
-        yield "One side of the turns is enough when mirrored copies are used (--mirror)."
+        yield "With mirrored copies of the clips (--mirror), turns to one side are enough."
     if to_mirror:
         yield (
             "Turns that fail to one side only need no capture: mirrored copies of the clips (--mirror) bring "
@@ -131,12 +131,12 @@ def _lacking(grid: Grid, region: Region) -> Region:
     return Region(region.side, region.cells[grid.seconds[tuple(region.cells.T)] < grid.limits.covered])
 
 
-def _to_capture(grid: Grid, region: Region) -> str:
+def _to_capture(grid: Grid, region: Region, mirrored: bool) -> str:
     speeds = grid.speeds[region.cells[:, 0]]
     turns = np.radians(np.abs(grid.turn_rates_deg[region.cells[:, 1]]))
     what = {
         STRAIGHT: "straight lines",
-        EITHER: "turns to the left and to the right",
+        EITHER: f"turns to the left {'or' if mirrored else 'and'} to the right",
         **dict.fromkeys((LEFT, LEFT_ONLY), "turns to the left"),
         **dict.fromkeys((RIGHT, RIGHT_ONLY), "turns to the right"),
     }[region.side]
