@@ -90,6 +90,18 @@ def test_repr_tells_name_length_and_unit() -> None:
     )
 
 
+def test_repr_counts_roots_beyond_a_handful() -> None:
+    many = Skeleton.post_rotation(
+        [f"root{k}" for k in range(100_000)], np.full(100_000, -1), np.zeros((100_000, 3))
+    )
+    shown = "roots: root0, root1, root2, root3, root4 and 99995 more"
+    assert repr(many) == f"Skeleton(100000 joints, {shown})"
+    still = Motion.from_pose(many, np.zeros((1, 0, 4)), np.zeros((1, 100_000, 3)), 0.1)
+    assert repr(still) == (
+        f"Motion(None, 1 frames at 10 fps = 0.100 s, 100000 joints, {shown}, unit unknown)"
+    )
+
+
 def test_every_public_name_is_there_whatever_was_imported_before() -> None:
     import importlib
     import pkgutil

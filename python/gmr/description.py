@@ -11,6 +11,7 @@ import numpy as np
 
 from gmr.channels import POSITIONS, ROTATIONS
 from gmr.guesses import UnitGuess, UpGuess, guess_body
+from gmr.listing import listed
 from gmr.resample import nominal_fps
 from gmr.skeleton import End
 from gmr.tpose import leading_rest_frames
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
     from gmr.motion import Motion
 
 __all__ = ["Description", "describe"]
+
+_SHOWN = 6
+"""Names that a sentence lists; the others it counts."""
 
 
 @dataclass(frozen=True)
@@ -87,12 +91,12 @@ def _oddities(motion: Motion, rest: int, up: UpGuess | None) -> list[str]:
     names = Counter(name for name, end in zip(skeleton.names, skeleton.ends, strict=True) if end == End.JOINT)
     found = []
     if repeated := [name for name, count in names.items() if count > 1]:
-        found.append(f"several joints share a name: {_listed(repeated)}")
+        found.append(f"several joints share a name: {listed(repeated, _SHOWN)}")
     if tips := int((skeleton.ends == End.TIP).sum()):
         leaves = "1 turning leaf has" if tips == 1 else f"{tips} turning leaves have"
         found.append(f"{leaves} no End Site; a zero-length tip stands for it")
     if len(motion.roots) > 1:
-        found.append(f"{len(motion.roots)} roots: {_listed(motion.roots)}")
+        found.append(f"{len(motion.roots)} roots: {listed(motion.roots, _SHOWN)}")
     found += _channel_oddities(motion)
     if motion.frame_count == 0:
         found.append("no frames: a skeleton alone")
@@ -105,7 +109,7 @@ def _oddities(motion: Motion, rest: int, up: UpGuess | None) -> list[str]:
         found.append(f"{frames} that a converter added and nobody recorded; evaluation leaves that out")
     if up is not None and up.sure and up.axis != "+Y":
         found.append(f"the body stands along {up.axis}, not +Y, which gmr takes as up")
-    if broken := int((~np.isfinite(motion.rows if motion.layout else motion.rotations)).sum()):
+    if broken := sum(int((~np.isfinite(values)).sum()) for values in motion.source.numbers):
         found.append(f"{broken} values are not finite")
     return found
 
@@ -132,8 +136,3 @@ def _channel_oddities(motion: Motion) -> list[str]:
 def _rotates_first(channels: Sequence[str]) -> bool:
     places = [name.lower() in POSITIONS for name in channels]
     return any(places) and not places[0]
-
-
-def _listed(names: Sequence[str], limit: int = 6) -> str:
-    shown = ", ".join(names[:limit])
-    return shown if len(names) <= limit else f"{shown} and {len(names) - limit} more"

@@ -35,6 +35,11 @@ class Rows:
     def __len__(self) -> int:
         return len(self.values)
 
+    @property
+    def numbers(self) -> tuple[NDArray[np.float64], ...]:
+        """All that was given, whatever its form."""
+        return (self.values,)
+
     def frames(self, part: slice) -> Rows:
         """Some of the frames; consecutive ones share memory."""
         return Rows(read_only(np.ascontiguousarray(self.values[part])), self.layout)
@@ -81,6 +86,11 @@ class Pose:
     def single(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Rotations and translations in float32, for kernels that are asked for it again and again."""
         return self.rotations.astype(np.float32), self.translations.astype(np.float32)
+
+    @property
+    def numbers(self) -> tuple[NDArray[np.float64], ...]:
+        """All that was given, whatever its form."""
+        return self.rotations, self.translations
 
     def frames(self, part: slice) -> Pose:
         """Some of the frames; consecutive ones share memory."""

@@ -18,7 +18,8 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from gmr.channels import ChannelLayout
 from gmr.errors import GmrError
 from gmr.frames import Pose, Rows, check_fit
-from gmr.skeleton import Skeleton
+from gmr.listing import listed
+from gmr.skeleton import ROOTS_SHOWN, Skeleton
 
 if TYPE_CHECKING:
     from gmr.dummies import Dropped
@@ -284,7 +285,7 @@ class Motion:
 
     def __repr__(self) -> str:
         unit = "unit unknown" if self.unit is None else f"unit {self.unit:g} m"
-        roots = ", ".join(self.roots) or "none"
+        roots = listed(self.roots, ROOTS_SHOWN) or "none"
         return (
             f"Motion({self.name!r}, {self.frame_count} frames at {self.fps:.6g} fps = {self.duration:.3f} s, "
             f"{self.skeleton.joint_count} joints, roots: {roots}, {unit})"

@@ -21,8 +21,15 @@ from numpy.typing import ArrayLike, NDArray
 from gmr import _core
 from gmr.arrays import frozen
 from gmr.errors import SkeletonError
+from gmr.listing import listed, quoted
 
-__all__ = ["End", "Skeleton", "owned_slots"]
+__all__ = ["ROOTS_SHOWN", "End", "Skeleton", "owned_slots"]
+
+ROOTS_SHOWN = 5
+"""Roots that a ``repr`` names; the others it counts."""
+
+_SHOWN = 8
+"""Names that an error lists; the others it counts."""
 
 
 class End(IntEnum):
@@ -123,7 +130,7 @@ class Skeleton:
         try:
             return _core.Topology(self.parents, self.slots, self.slot_count)
         except ValueError as error:
-            raise SkeletonError(f"{error} (joints: {_some(self.names)})") from error
+            raise SkeletonError(f"{error} (joints: {quoted(self.names, _SHOWN)})") from error
 
     @cached_property
     def roots(self) -> tuple[int, ...]:
@@ -191,10 +198,16 @@ class Skeleton:
         if len(found) == 1:
             return found[0]
         if found:
-            listed = ", ".join(map(str, found[:8])) + (", ..." if len(found) > 8 else "")
-            raise SkeletonError(f"{len(found)} joints are named '{joint}': say which by index, {listed}")
+            raise SkeletonError(
+                f"{len(found)} joints are named '{joint}': say which by index, "
+                f"{listed([str(index) for index in found], _SHOWN)}"
+            )
         near = difflib.get_close_matches(joint, self.names, n=3)
-        hint = f"did you mean {_some(near)}?" if near else f"the skeleton has {_some(self.names)}."
+        hint = (
+            f"did you mean {quoted(near, _SHOWN)}?"
+            if near
+            else f"the skeleton has {quoted(self.names, _SHOWN)}."
+        )
         raise SkeletonError(f"there is no joint '{joint}'; {hint}")
 
     def indices(self, joints: Iterable[str | int | np.integer[Any]]) -> NDArray[np.int32]:
@@ -209,8 +222,8 @@ class Skeleton:
         return found
 
     def __repr__(self) -> str:
-        roots = ", ".join(self.names[root] for root in self.roots)
-        return f"Skeleton({self.joint_count} joints, roots: {roots or 'none'})"
+        roots = listed([self.names[root] for root in self.roots], ROOTS_SHOWN) or "none"
+        return f"Skeleton({self.joint_count} joints, roots: {roots})"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Skeleton):
@@ -241,9 +254,3 @@ def owned_slots(parents: NDArray[np.int32], turning: Iterable[int] = ()) -> NDAr
     owns[parents[parents >= 0]] = True
     owns[np.fromiter(turning, np.intp)] = True
     return np.where(owns, np.cumsum(owns) - 1, -1).astype(np.int32)
-
-
-def _some(names: Sequence[str], limit: int = 8) -> str:
-    """The names in quotes, the rest of a long list as a count."""
-    listed = ", ".join(f"'{name}'" for name in names[:limit])
-    return listed if len(names) <= limit else f"{listed} and {len(names) - limit} more"

@@ -5,14 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from os.path import commonpath
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
+
+from gmr.listing import listed
 
 if TYPE_CHECKING:
     from gmr.description import Description
 
 __all__ = ["overview", "page"]
+
+FEW: Final = 6
+"""Joints that a line names; the others it counts."""
 
 
 def page(path: str, of: Description) -> str:
@@ -20,10 +25,10 @@ def page(path: str, of: Description) -> str:
     lines = [
         ("frames", _frames(of)),
         ("joints", _joints(of)),
-        ("roots", _few(of.roots) or "none"),
-        ("dummies", _few(of.dummies, 12) or "none"),
+        ("roots", listed(of.roots, FEW) or "none"),
+        ("dummies", listed(of.dummies, 12) or "none"),
         ("channels", f"{of.channels} a frame: {_channels(of)}"),
-        ("moving", f"position channels below the root: {_few(of.moving)}" if of.moving else ""),
+        ("moving", f"position channels below the root: {listed(of.moving, FEW)}" if of.moving else ""),
         ("size", _size(of)),
         ("up", _up(of)),
         *(("odd", oddity) for oddity in of.oddities),
@@ -45,7 +50,7 @@ def _joints(of: Description) -> str:
 
 def _channels(of: Description) -> str:
     counted = [f"{_short(order)} ({count})" for order, count in of.orders.items()]
-    return _few(counted, 4) if counted else "none"
+    return listed(counted, 4) if counted else "none"
 
 
 def _short(order: str) -> str:
@@ -79,11 +84,6 @@ def _up(of: Description) -> str:
     return f"{of.up_guess.axis}, {reason}"
 
 
-def _few(names: tuple[str, ...] | list[str], limit: int = 6) -> str:
-    shown = ", ".join(names[:limit])
-    return shown if len(names) <= limit else f"{shown} and {len(names) - limit} more"
-
-
 def overview(found: Mapping[str, Description]) -> str:
     """A line for each motion, then what they have in common and what is odd about which."""
     base = _base(list(found))
@@ -100,8 +100,8 @@ def overview(found: Mapping[str, Description]) -> str:
     lines += ["", f"{len(found)} motions in {base or '.'}: {frames:,} frames, {seconds:,.1f} s"]
     lines += _shared("unit", found, shown, lambda of: [_unit(of)])
     lines += _shared("up", found, shown, lambda of: [_up(of) or "unknown"])
-    lines += _shared("roots", found, shown, lambda of: [_few(of.roots) or "none"])
-    lines += _shared("dummies", found, shown, lambda of: [_few(of.dummies, 12) or "none"])
+    lines += _shared("roots", found, shown, lambda of: [listed(of.roots, FEW) or "none"])
+    lines += _shared("dummies", found, shown, lambda of: [listed(of.dummies, 12) or "none"])
     lines += _shared("odd", found, shown, lambda of: of.oddities)
     return "\n".join(lines)
 
@@ -126,7 +126,7 @@ def _shared(
         for fact in facts(of):
             files.setdefault(fact, []).append(shown[path])
     return [
-        f"  {key:<9} {fact}" + ("" if len(who) == len(found) else f"  [{len(who)}: {_few(who, 3)}]")
+        f"  {key:<9} {fact}" + ("" if len(who) == len(found) else f"  [{len(who)}: {listed(who, 3)}]")
         for fact, who in sorted(files.items(), key=lambda entry: -len(entry[1]))
     ]
 

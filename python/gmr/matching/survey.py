@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gmr.errors import DatasetError
-from gmr.frames import Rows
+from gmr.listing import quoted
 from gmr.matching.body import Poses, leg_length, turned_upright, up_axis
 from gmr.matching.joints import Joints, find_joints
 from gmr.matching.prepare import guessed_unit, in_metres_upright, unit_text
@@ -19,7 +19,7 @@ from gmr.skeleton import Skeleton
 from gmr.tpose import leading_rest_frames
 from gmr.units import metres_per_unit
 
-__all__ = ["Survey", "listed", "survey"]
+__all__ = ["Survey", "survey"]
 
 _SAMPLES = 12
 """Poses of each clip that decide on joints, up axis and unit."""
@@ -115,13 +115,6 @@ def survey(
     )
 
 
-def listed(names: Iterable[str], limit: int = 5) -> str:
-    """The first names in quotes, the rest as a count."""
-    every = list(names)
-    text = ", ".join(f"'{name}'" for name in every[:limit])
-    return text if len(every) <= limit else f"{text} and {len(every) - limit} more"
-
-
 def _usable(motions: Mapping[str, Motion]) -> tuple[dict[str, Motion], dict[str, str]]:
     """The clips that move and hold finite numbers, and why the others are left out."""
     excluded: dict[str, str] = {}
@@ -141,9 +134,7 @@ def _unusable(motion: Motion) -> str | None:
         return "its frame time is 0; say how long a frame lasts"
     if motion.frame_count < 2:
         return "it is a pose, not a movement: a clip has at least 2 frames"
-    source = motion.source
-    held = (source.values,) if isinstance(source, Rows) else (source.rotations, source.translations)
-    if not all(np.isfinite(values).all() for values in held):
+    if not all(np.isfinite(values).all() for values in motion.source.numbers):
         return "it holds numbers that are not finite"
     return None
 
@@ -166,7 +157,7 @@ def _short_notes(motions: Mapping[str, Motion], shortest: float) -> list[str]:
         return []
     return [
         f"Shorter than the {shortest:.2f} s of a pose and the path ahead of it, and so counted for coverage "
-        f"but never matched: {len(short)} of {len(motions)} clips ({listed(short, 3)})."
+        f"but never matched: {len(short)} of {len(motions)} clips ({quoted(short, 3)})."
     ]
 
 
@@ -180,7 +171,7 @@ def _without_tposes(
         return motions, {}, []
     note = (
         f"{len(skipped)} of {len(motions)} clips begin with a T-pose that a converter added (whole-number "
-        f"angles, then a jump of the whole body); it was left out ({listed(skipped, 3)})."
+        f"angles, then a jump of the whole body); it was left out ({quoted(skipped, 3)})."
     )
     return {name: motion[skipped.get(name, 0) :] for name, motion in motions.items()}, skipped, [note]
 
@@ -203,7 +194,7 @@ def _on_one_skeleton(motions: dict[str, Motion], excluded: dict[str, str]) -> di
     usual = motions[kinds[main][0]].skeleton
     others = [name for kind, clips in kinds.items() if kind != main for name in clips]
     if seconds[main] <= 0.5 * sum(seconds.values()):
-        groups = "; ".join(f"{listed(clips, 3)}" for clips in kinds.values())
+        groups = "; ".join(f"{quoted(clips, 3)}" for clips in kinds.values())
         raise DatasetError(
             f"the clips have {len(kinds)} different skeletons ({groups}), none with more than half of the "
             "time. Evaluate the clips of one skeleton at a time."
@@ -219,8 +210,8 @@ def _difference(usual: Skeleton, odd: Skeleton) -> str:
     lacking = [name for name in usual.names if name not in odd.names]
     added = [name for name in odd.names if name not in usual.names]
     if lacking or added:
-        parts = [f"it lacks {listed(lacking, 3)}"] if lacking else []
-        return " and ".join(parts + ([f"it has {listed(added, 3)} besides"] if added else []))
+        parts = [f"it lacks {quoted(lacking, 3)}"] if lacking else []
+        return " and ".join(parts + ([f"it has {quoted(added, 3)} besides"] if added else []))
     return "the joints are in another order or hang on other parents"
 
 
@@ -255,7 +246,7 @@ def _units(
     notes = [
         f"Unit guessed from the length of the legs: {unit_text(metres)}, which makes the body about "
         f"{_middle([stature for _, stature in clips]):.2f} m tall"
-        + (f" (for {listed([name for name, _ in clips])})" if len(guesses) > 1 else "")
+        + (f" (for {quoted([name for name, _ in clips], 5)})" if len(guesses) > 1 else "")
         + "; say unit=... if it is another."
         for metres, clips in guesses.items()
     ]
