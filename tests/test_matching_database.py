@@ -160,7 +160,7 @@ def test_clips_in_other_units_and_with_other_axes_up_give_the_same_rows() -> Non
 
 def laid_down(motion: Motion, up: str) -> Motion:
     """The motion in a world in which the axis ``up`` is up."""
-    from gmr.matching.body import UP_TURNS
+    from gmr.body.measures import UP_TURNS
     from gmr.quaternions import conjugate, matrices, multiply
 
     down = conjugate(np.array(UP_TURNS[up]))

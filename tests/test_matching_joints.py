@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import gmr
+from gmr.body.joints import Joints
+from gmr.body.naming import CONVENTIONS, roles_by_name, side_and_part
 from gmr.errors import DatasetError
 from gmr.matching import find_joints
-from gmr.matching.joints import Joints
-from gmr.matching.naming import CONVENTIONS, roles_by_name, side_and_part
 from gmr.motion import Motion
 from gmr.skeleton import Skeleton
 from walkers import CMU, body, walker

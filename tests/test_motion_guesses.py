@@ -12,6 +12,7 @@ import gmr
 from gmr import ChannelLayout, Motion, Skeleton
 from gmr.description import describe
 from gmr.guesses import guess_body
+from gmr.matching.survey import survey
 from gmr.tpose import has_leading_tpose, leading_rest_frames, without_leading_tpose
 from gmr.units import UNITS, metres_per_unit
 
@@ -56,6 +57,35 @@ def test_the_unit_of_a_walk_is_guessed(walk: Motion, unit: str) -> None:
 
 def test_no_unit_is_guessed_for_what_is_no_human(walk: Motion) -> None:
     assert guess_body(walk.with_unit(1).to_unit(2.0)).unit is None
+
+
+@pytest.mark.parametrize("child", [0.55, 0.7, 0.8, 1.0, 1.3, 1.45, 1.6, 0.08, 13.0])
+def test_a_guess_is_what_evaluation_takes(walk: Motion, child: float) -> None:
+    sized = replace(walk.with_unit(1).to_unit(1 / child), unit=None)
+    guess = guess_body(sized).unit
+    if guess is None:
+        with pytest.raises(gmr.errors.DatasetError, match="unit="):
+            survey({"walk": sized}, 0.0)
+        return
+    surveyed = survey({"walk": sized}, 0.0)
+    assert (surveyed.units["walk"], surveyed.up) == (guess.metres, "+Y")
+    assert guess.by == "legs"
+
+
+def test_a_body_on_its_knees_is_measured_by_its_legs(walk: Motion) -> None:
+    assert walk.layout is not None
+    rows = walk.rows.copy()
+    for knee in walk.skeleton.indices(["LeftLeg", "RightLeg"]).tolist():
+        bent = [name.lower() for name in walk.layout.names[knee]].index("xrotation")
+        rows[:, walk.layout.starts[knee] + bent] = 110
+    kneeling, upright = guess_body(with_rows(walk, rows)), guess_body(walk)
+    assert kneeling.height is not None
+    assert upright.height is not None
+    assert kneeling.height < 0.9 * upright.height
+    assert kneeling.unit is not None
+    assert upright.unit is not None
+    assert kneeling.unit.name == upright.unit.name
+    assert kneeling.unit.body_metres == pytest.approx(upright.unit.body_metres)
 
 
 @pytest.mark.parametrize(

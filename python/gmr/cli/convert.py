@@ -66,7 +66,7 @@ class _Changes:
 @click.option(
     "--from-unit",
     type=_Unit(),
-    help="The unit that IN is in; guessed from the body's height, and said, otherwise.",
+    help="The unit that IN is in; guessed from the body, and said, otherwise.",
 )
 @click.option("--mirror", is_flag=True, help="Write the mirror image, left for right.")
 @click.option(
@@ -157,7 +157,7 @@ def _changed(motion: Motion, changes: _Changes, guessed: dict[str, list[str]]) -
 
 
 def _in_known_unit(motion: Motion, stated: float | None, guessed: dict[str, list[str]]) -> Motion:
-    """The motion with the unit that was stated, or is guessed from the body's height."""
+    """The motion with the unit that was stated, or is guessed from the body."""
     from gmr.errors import GmrError
     from gmr.guesses import guess_body
 
@@ -167,8 +167,8 @@ def _in_known_unit(motion: Motion, stated: float | None, guessed: dict[str, list
         return motion
     guess = guess_body(motion).unit
     if guess is None:
-        raise GmrError(f"{motion.name}: no unit makes this body a human's height; state it with --from-unit")
-    said = f"{guess.name} ({guess.metres:.4g} m), in which the body has a human's height"
+        raise GmrError(f"{motion.name}: no unit makes this body a human's; state it with --from-unit")
+    said = f"{guess.name} ({guess.metres:.4g} m), in which the body is a human's"
     guessed.setdefault(said, []).append(str(motion.name))
     return motion.with_unit(guess.metres)
 

@@ -72,9 +72,10 @@ def _size(of: Description) -> str:
     if of.unit is not None:
         return f"{tall}, {of.height * of.unit:.2f} m"
     if of.unit_guess is None:
-        return f"{tall}; no unit makes that a human's height"
+        return f"{tall}; no unit makes that a human"
     guess = of.unit_guess
-    return f"{tall}; {guess.body_metres:.2f} m if the unit is {guess.name} ({guess.metres:.4g} m): a guess"
+    metres = f"{of.height * guess.metres:.2f} m if the unit is {guess.name} ({guess.metres:.4g} m)"
+    return f"{tall}; {metres}: a guess from the {guess.by}"
 
 
 def _up(of: Description) -> str:
@@ -142,5 +143,5 @@ def _unit(of: Description) -> str:
     if of.unit is not None:
         return f"{of.unit:g} m"
     if of.unit_guess is None:
-        return "unknown: none makes that a human's height"
-    return f"{of.unit_guess.name} ({of.unit_guess.metres:.4g} m), a guess from the body's height"
+        return "unknown: none makes that a human"
+    return f"{of.unit_guess.name} ({of.unit_guess.metres:.4g} m), a guess from the {of.unit_guess.by}"

@@ -3,8 +3,8 @@ database, and trials of what it can follow."""
 
 from __future__ import annotations
 
+from gmr.body.joints import Joints, find_joints
 from gmr.matching.database import Database, Normalization
-from gmr.matching.joints import Joints, find_joints
 from gmr.matching.schema import LOCOMOTION, Group, Schema
 from gmr.matching.trial import Profile, Segment, Status, TrialLog, run_trials, trial_positions
 

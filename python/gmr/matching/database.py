@@ -15,9 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from gmr import _core
 from gmr.arrays import read_only
+from gmr.body.joints import Joints
 from gmr.errors import DatasetError
 from gmr.matching.assemble import Tags, assemble
-from gmr.matching.joints import Joints
 from gmr.matching.schema import LOCOMOTION, Schema
 from gmr.matching.survey import Survey, survey
 from gmr.motion import Motion

@@ -4,40 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from gmr.errors import DatasetError
-from gmr.matching.body import UP_TURNS, turned_upright
+from gmr.body.measures import UP_TURNS, turned_upright
 from gmr.motion import Motion
 from gmr.quaternions import multiply
 from gmr.units import UNITS
 
-__all__ = ["guessed_unit", "in_metres_upright", "unit_text"]
-
-_STATURE_PER_LEG = 1 / 0.491
-"""Stature over the length of thigh and shin. Source: Winter, "Biomechanics and Motor Control of Human
-Movement", segment lengths after Drillis and Contini: 0.245 and 0.246 of the stature."""
-
-_GUESSED = ("m", "cm", "mm", "in", "ft", "cmu")
-_USUAL_STATURE = 1.7
-_PLAUSIBLE_STATURES = (1.0, 2.4)
-
-
-def guessed_unit(leg: float) -> tuple[float, float]:
-    """Metres per file unit for a body whose legs are ``leg`` file units long, and the stature that this
-    gives.
-
-    Raises:
-        DatasetError: no known unit makes it a human's leg.
-    """
-    stature = leg * _STATURE_PER_LEG
-    units = [UNITS[name] for name in _GUESSED]
-    unit = min(units, key=lambda unit: abs(np.log(max(stature, 1e-300) * unit / _USUAL_STATURE)))
-    least, most = _PLAUSIBLE_STATURES
-    if not least <= stature * unit <= most:
-        raise DatasetError(
-            f"a leg of {leg:.4g} file units is a human's in none of {', '.join(_GUESSED)}; "
-            "say how many metres a file unit is: unit=..."
-        )
-    return unit, stature * unit
+__all__ = ["in_metres_upright", "unit_text"]
 
 
 def unit_text(unit: float) -> str:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr import _core
-from gmr.matching.body import Poses
-from gmr.matching.joints import Joints
+from gmr.body.joints import Joints
+from gmr.body.measures import Poses
 from gmr.motion import Motion
 from gmr.quaternions import matrices
 from gmr.skeleton import Skeleton

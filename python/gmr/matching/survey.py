@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gmr.body.joints import Joints, find_joints
+from gmr.body.measures import Poses, leg_length, turned_upright, up_axis
 from gmr.errors import DatasetError
+from gmr.guesses import GUESSED_UNITS, unit_of_legs
 from gmr.listing import quoted
-from gmr.matching.body import Poses, leg_length, turned_upright, up_axis
-from gmr.matching.joints import Joints, find_joints
-from gmr.matching.prepare import guessed_unit, in_metres_upright, unit_text
+from gmr.matching.prepare import in_metres_upright, unit_text
 from gmr.matching.root import RootJoint, find_root_joint, joints_left_behind
 from gmr.motion import Motion
 from gmr.skeleton import Skeleton
@@ -72,7 +73,7 @@ def survey(
     Args:
         motions: clips by name.
         shortest: seconds that a clip must last for a frame of it to be matched.
-        names: joints by role, where the caller knows them; see :func:`gmr.matching.joints.find_joints`.
+        names: joints by role, where the caller knows them; see :func:`gmr.body.joints.find_joints`.
         unit: metres per file unit (or "cm", ...) of clips that do not say; guessed from the body by default.
 
     Raises:
@@ -232,7 +233,11 @@ def _units(
     unit: float | str | None,
 ) -> tuple[dict[str, float], list[str]]:
     """Metres per file unit of each clip: what it says, else what the caller says, else a guess, which is
-    noted."""
+    noted.
+
+    Raises:
+        DatasetError: in no known unit a clip's body has a human's legs.
+    """
     given = None if unit is None else metres_per_unit(unit)
     units: dict[str, float] = {}
     guesses: dict[float, list[tuple[str, float]]] = {}
@@ -240,8 +245,14 @@ def _units(
         known = motion.unit or given
         if known is None:
             leg = leg_length(motion.skeleton, poses[name], joints.roles)
-            known, stature = guessed_unit(leg)
-            guesses.setdefault(known, []).append((name, stature))
+            guess = unit_of_legs(leg)
+            if guess is None:
+                raise DatasetError(
+                    f"'{name}': a leg of {leg:.4g} file units is a human's in none of "
+                    f"{', '.join(GUESSED_UNITS)}; say how many metres a file unit is: unit=..."
+                )
+            known = guess.metres
+            guesses.setdefault(known, []).append((name, guess.body_metres))
         units[name] = known
     notes = [
         f"Unit guessed from the length of the legs: {unit_text(metres)}, which makes the body about "

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gmr.body.measures import Poses, fault, path, toe_directions, turned_upright, up_axis
+from gmr.body.naming import CONVENTIONS, REQUIRED, ROLES, roles_by_name
 from gmr.errors import DatasetError, SkeletonError
-from gmr.matching.body import Poses, fault, path, toe_directions, turned_upright, up_axis
-from gmr.matching.naming import CONVENTIONS, REQUIRED, ROLES, roles_by_name
+from gmr.listing import quoted
 from gmr.skeleton import Skeleton
 
-__all__ = ["Joints", "find_joints"]
+__all__ = ["Joints", "find_joints", "named_roles"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +22,7 @@ class Joints:
     """The joints of a skeleton that have a role, checked against the poses that they were found in."""
 
     roles: Mapping[str, int]
-    """Joint index by role; see :data:`gmr.matching.naming.ROLES`."""
+    """Joint index by role; see :data:`gmr.body.naming.ROLES`."""
     found_by: str
     """``"names"``, ``"shape"`` or ``"given"``."""
 
@@ -58,7 +59,7 @@ def find_joints(skeleton: Skeleton, poses: Poses, names: Mapping[str, str | int]
             lists the skeleton's joints and says how to name them.
     """
     given = _given(skeleton, names or {})
-    proper = ["" if end else name for name, end in zip(skeleton.names, skeleton.ends.tolist(), strict=True)]
+    proper = _proper(skeleton)
     reasons = []
     for words in CONVENTIONS:
         roles = roles_by_name(proper, words) | given
@@ -71,6 +72,17 @@ def find_joints(skeleton: Skeleton, poses: Poses, names: Mapping[str, str | int]
     if shape and _fault(skeleton, poses, shape | given) is None:
         return Joints(shape | given, "shape")
     raise DatasetError(f"{min(reasons)[1]}. {_remedy(skeleton)}")
+
+
+def named_roles(skeleton: Skeleton) -> dict[str, int] | None:
+    """The joints whose names alone give them a role, whatever the poses say; None without a whole body."""
+    found = (roles_by_name(_proper(skeleton), words) for words in CONVENTIONS)
+    return next((roles for roles in found if all(role in roles for role in REQUIRED)), None)
+
+
+def _proper(skeleton: Skeleton) -> list[str]:
+    """(J,) names of the joints, "" for ends, which have no role."""
+    return ["" if end else name for name, end in zip(skeleton.names, skeleton.ends.tolist(), strict=True)]
 
 
 def _given(skeleton: Skeleton, names: Mapping[str, str | int]) -> dict[str, int]:
@@ -94,11 +106,9 @@ def _fault(skeleton: Skeleton, poses: Poses, roles: Mapping[str, int]) -> str | 
 
 
 def _remedy(skeleton: Skeleton) -> str:
-    proper = [name for name, end in zip(skeleton.names, skeleton.ends.tolist(), strict=True) if not end]
-    listed = ", ".join(f"'{name}'" for name in proper[:80])
-    more = f" and {len(proper) - 80} more" if len(proper) > 80 else ""
+    joints = quoted([name for name in _proper(skeleton) if name], 80)
     return (
-        f"The joints are {listed}{more}. Name those of a body, for example "
+        f"The joints are {joints}. Name those of a body, for example "
         "names={'hips': ..., 'left_up_leg': ..., 'right_up_leg': ..., 'left_foot': ..., 'right_foot': ...}"
     )
 
@@ -122,21 +132,25 @@ def _lowest_limbs(skeleton: Skeleton, poses: Poses) -> tuple[list[int], list[int
     extent = height.max() - height.min()
     leaves = [joint for joint, children in enumerate(skeleton.children) if not children]
     first, *others = sorted(leaves, key=lambda leaf: (height[leaf], leaf)) or [-1]
+    tops = _branchings(skeleton, first)
     for second in others:
-        top = _branching(skeleton, first, second)
-        if top is not None and height[top] - max(height[first], height[second]) > 0.3 * extent:
+        top = tops[second]
+        if top >= 0 and height[top] - max(height[first], height[second]) > 0.3 * extent:
             return path(skeleton, top, first), path(skeleton, top, second)
     return None
 
 
-def _branching(skeleton: Skeleton, one: int, other: int) -> int | None:
-    above = set()
-    while one >= 0:
-        above.add(one)
-        one = int(skeleton.parents[one])
-    while other >= 0 and other not in above:
-        other = int(skeleton.parents[other])
-    return other if other >= 0 else None
+def _branchings(skeleton: Skeleton, leaf: int) -> list[int]:
+    """(J,) the lowest joint above each joint and ``leaf``, -1 for a joint of another root."""
+    tops = [-1] * skeleton.joint_count
+    above = leaf
+    while above >= 0:
+        tops[above] = above
+        above = int(skeleton.parents[above])
+    for joint in skeleton.parents_first:
+        if tops[joint] < 0 and skeleton.parents[joint] >= 0:
+            tops[joint] = tops[skeleton.parents[joint]]
+    return tops
 
 
 def _sided(skeleton: Skeleton, poses: Poses, one: list[int], other: list[int]) -> dict[str, int] | None:

@@ -1,0 +1,1 @@
+"""The body in a skeleton: its hips, legs and feet, which way is up, how long its legs are."""
