@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.evaluation.figures.figure import Figure
-from gmr.evaluation.figures.trial_maps import HOVER, place, trials_of
+from gmr.evaluation.figures.trial_maps import HOVER, cells_of_trials, trials_of
 from gmr.evaluation.regions import Grid, Limits
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.table import Table
@@ -85,24 +85,12 @@ def _chart(rows: int) -> dict[str, Any]:
         }
 
     legend = {"title": None, "columns": {"expr": "windowSize()[0] < 600 ? 2 : 4"}}
-    return {
-        "width": "container",
-        "height": max(44 * rows, 60),
-        "data": {"name": "trials"},
-        "resolve": {"scale": {"color": "independent"}},
-        "encoding": place(),
-        "layer": [
-            {
-                "mark": {"type": "rect", "stroke": "var(--page)", "strokeWidth": 2, "aria": False},
-                "encoding": {"color": colour("", legend)},
-            },
-            {
-                "mark": {
-                    "type": "text",
-                    "fontSize": {"expr": "windowSize()[0] < 600 ? 8 : 12"},
-                    "aria": False,
-                },
-                "encoding": {"text": {"field": "mark", "type": "nominal"}, "color": colour("on-", None)},
-            },
-        ],
+    marks = {
+        "mark": {
+            "type": "text",
+            "fontSize": {"expr": "windowSize()[0] < 600 ? 8 : 12"},
+            "aria": False,
+        },
+        "encoding": {"text": {"field": "mark", "type": "nominal"}, "color": colour("on-", None)},
     }
+    return cells_of_trials(rows, colour("", legend), marks)

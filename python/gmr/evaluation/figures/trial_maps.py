@@ -11,7 +11,7 @@ from gmr.evaluation.figures.measures import Measure
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.table import Table
 
-__all__ = ["HOVER", "place", "trial_map", "trial_sets", "trials_of"]
+__all__ = ["HOVER", "cells_of_trials", "trial_map", "trial_sets", "trials_of"]
 
 
 def trial_map(evaluation: Evaluation, measure: Measure, scenario: str, tracking: str) -> Figure:
@@ -61,7 +61,7 @@ HOVER: Final = {
 }
 
 
-def place() -> dict[str, Any]:
+def _place() -> dict[str, Any]:
     """Where a trial stands on a map, and what it tells when it is pointed at."""
     return {
         "x": {
@@ -89,36 +89,38 @@ def place() -> dict[str, Any]:
     }
 
 
-def _chart(measure: Measure, rows: int) -> dict[str, Any]:
-    sign = "+" if measure.classes.palette == "signed" else ""
-    number = f"format(datum.value, '{sign}.{measure.decimals}f')"
-    ink = {"color": measure.classes.ink()}
+def cells_of_trials(rows: int, colour: dict[str, Any], *layers: dict[str, Any]) -> dict[str, Any]:
+    """A map of the trials: a cell for each in its ``colour``, and ``layers`` on top."""
+    cells = {
+        "mark": {"type": "rect", "stroke": "var(--page)", "strokeWidth": 2, "aria": False},
+        "encoding": {"color": colour},
+    }
     return {
         "width": "container",
         "height": max(44 * rows, 60),
         "data": {"name": "trials"},
         "resolve": {"scale": {"color": "independent"}},
-        "encoding": place(),
-        "layer": [
-            {
-                "mark": {"type": "rect", "stroke": "var(--page)", "strokeWidth": 2, "aria": False},
-                "encoding": {
-                    "color": measure.classes.colour(measure.unit, columns=4 if sign else 7),
-                },
-            },
-            {
-                "transform": [{"calculate": number, "as": "number"}],
-                "mark": {
-                    "type": "text",
-                    "fontSize": {"expr": "windowSize()[0] < 600 ? 10 : 13"},
-                    "dy": -6 if measure.spread else 0,
-                    "aria": False,
-                },
-                "encoding": {"text": {"field": "number", "type": "nominal"}, **ink},
-            },
-            *([_spread_layer(measure, ink)] if measure.spread else []),
-        ],
+        "encoding": _place(),
+        "layer": [cells, *layers],
     }
+
+
+def _chart(measure: Measure, rows: int) -> dict[str, Any]:
+    sign = "+" if measure.classes.palette == "signed" else ""
+    number = f"format(datum.value, '{sign}.{measure.decimals}f')"
+    ink = {"color": measure.classes.ink()}
+    figures = {
+        "transform": [{"calculate": number, "as": "number"}],
+        "mark": {
+            "type": "text",
+            "fontSize": {"expr": "windowSize()[0] < 600 ? 10 : 13"},
+            "dy": -6 if measure.spread else 0,
+            "aria": False,
+        },
+        "encoding": {"text": {"field": "number", "type": "nominal"}, **ink},
+    }
+    colour = measure.classes.colour(measure.unit, columns=4 if sign else 7)
+    return cells_of_trials(rows, colour, figures, *([_spread_layer(measure, ink)] if measure.spread else []))
 
 
 def _spread_layer(measure: Measure, ink: dict[str, Any]) -> dict[str, Any]:

@@ -122,7 +122,6 @@ impl Index {
         candidates: &[bool],
         tags: Option<&[u32]>,
     ) -> Result<Self, IndexError> {
-        check_rows(features, dims, candidates, tags)?;
         Self::build_for(Isa::current(), features, dims, candidates, tags)
     }
 
