@@ -18,6 +18,7 @@ use crate::skeleton::Topology;
 
 mod block;
 mod plan;
+mod roots;
 mod scalar;
 #[cfg(test)]
 mod tests;
@@ -93,7 +94,9 @@ pub fn forward_kinematics<T: Real>(
     job: &ForwardKinematics<'_, T>,
     world: World<'_, T>,
 ) -> Result<(), JobError> {
-    forward_kinematics_on(Isa::current(), job, world)
+    // A register that is mostly empty is slower than plain numbers, and its scratch larger than the input.
+    let isa = if job.frame_count < 4 { Isa::Scalar } else { Isa::current() };
+    forward_kinematics_on(isa, job, world)
 }
 
 /// [`forward_kinematics`] on a given instruction set. All give the same bits.
@@ -118,6 +121,7 @@ pub fn forward_kinematics_on<T: Real>(
         ShapeError::check("rotations out", job.frame_count * rotation_width, rotations.len())?;
     }
 
+    let copied = roots::translated_roots(job, &plan);
     let is_large = world.positions.as_deref().is_some_and(cache::is_large)
         || world.rotations.as_deref().is_some_and(cache::is_large);
     let piece = if thread_count(job.threads, usize::MAX) == 1 { job.frame_count } else { FRAMES_PER_PIECE };
@@ -126,9 +130,10 @@ pub fn forward_kinematics_on<T: Real>(
     for_each_piece(job.frame_count.div_ceil(piece.max(1)), job.threads, |index| {
         let frames = index * piece..job.frame_count.min((index + 1) * piece);
         let world = World { positions: take(&positions, index), rotations: take(&rotations, index) };
-        match isa {
-            Isa::Scalar => scalar::run(job, &plan, frames, world),
-            _ => T::dispatch(isa, Frames { job, plan: &plan, frames, world, is_large }),
+        match (&copied, isa) {
+            (Some(places), _) => roots::copy(job, places, frames, world),
+            (None, Isa::Scalar) => scalar::run(job, &plan, frames, world),
+            (None, _) => T::dispatch(isa, Frames { job, plan: &plan, frames, world, is_large }),
         }
     });
     Ok(())

@@ -226,6 +226,35 @@ fn a_quarter_turn_of_the_hip_lifts_the_toe_forward() {
 }
 
 #[test]
+fn positions_of_translated_roots_are_their_translations() {
+    let topology = Topology::new(&[-1, -1, 0, -1], &[-1, -1, -1, -1], 0).unwrap();
+    let translations: Vec<f32> = (0..3 * 3 * 2000).map(|k| k as f32).collect();
+    let job = ForwardKinematics {
+        topology: &topology,
+        offsets: &[7.0; 12],
+        translated: &[3, 0, 1],
+        pose: Pose::Quaternions { rotations: &[], normalize: false, translations: &translations },
+        frame_count: 2000,
+        joints: None,
+        rotation_slots: None,
+        threads: 2,
+    };
+    for (joints, places) in
+        [(vec![3, 0, 1], vec![0, 1, 2]), (vec![0, 0, 3], vec![1, 1, 0]), (vec![1], vec![2])]
+    {
+        let job = ForwardKinematics { joints: Some(&joints), ..job };
+        let mut found = vec![0.0; 2000 * joints.len() * 3];
+        forward_kinematics(&job, World { positions: Some(&mut found), rotations: None }).unwrap();
+        let frames = translations.as_chunks::<9>().0;
+        let expected: Vec<f32> = frames
+            .iter()
+            .flat_map(|frame| places.iter().flat_map(|&place| frame[3 * place..3 * place + 3].to_vec()))
+            .collect();
+        assert!(found == expected, "{joints:?}");
+    }
+}
+
+#[test]
 fn a_million_joints_in_one_chain_are_solved() {
     let count = 1_000_000;
     let parents: Vec<i32> = (-1..count - 1).collect();

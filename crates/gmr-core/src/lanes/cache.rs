@@ -1,4 +1,5 @@
-//! Hints to the memory: fetch what is needed next, and write past the caches what nobody will read soon.
+//! Hints to the memory: fetch what is needed next, and write past the caches what nobody will read soon. Nothing but
+//! speed depends on them; Miri, which knows neither, goes without.
 
 /// Bytes of a cache line.
 const LINE: usize = 64;
@@ -19,7 +20,7 @@ pub(crate) fn prefetch<T>(source: &[T], start: usize, count: usize, part: usize,
     }
 }
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(miri)))]
 #[inline(always)]
 fn prefetch_line<T>(place: &T) {
     use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
@@ -27,12 +28,12 @@ fn prefetch_line<T>(place: &T) {
     unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(place).cast()) };
 }
 
-#[cfg(not(target_arch = "x86_64"))]
+#[cfg(any(not(target_arch = "x86_64"), miri))]
 #[inline(always)]
 fn prefetch_line<T>(_place: &T) {}
 
 /// Copies `source` to `target` past the caches. [`settle`] before another thread may read it.
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(miri)))]
 pub(crate) fn stream<T: super::Real>(source: &[T], target: &mut [T]) {
     use std::arch::x86_64::{_mm_loadu_si128, _mm_stream_si128};
     assert_eq!(source.len(), target.len(), "copy of another length");
@@ -52,14 +53,14 @@ pub(crate) fn stream<T: super::Real>(source: &[T], target: &mut [T]) {
     }
 }
 
-#[cfg(not(target_arch = "x86_64"))]
+#[cfg(any(not(target_arch = "x86_64"), miri))]
 pub(crate) fn stream<T: super::Real>(source: &[T], target: &mut [T]) {
     target.copy_from_slice(source);
 }
 
 /// Waits until what was streamed can be seen by all.
 pub(crate) fn settle() {
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(target_arch = "x86_64", not(miri)))]
     // SAFETY: SSE belongs to every x86-64.
     unsafe {
         std::arch::x86_64::_mm_sfence();

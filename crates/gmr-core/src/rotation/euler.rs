@@ -154,7 +154,8 @@ fn decompose(q: [f64; 4], axes: Axes, before: Option<[f64; 3]>) -> [f64; 3] {
     let q = normalize(q);
     let quarter = std::f64::consts::FRAC_1_SQRT_2;
     let q = if is_proper { q } else { multiply_axis(q, axes[1], quarter, quarter) };
-    let (along, across) = (q[3].hypot(q[i]), q[j].hypot(q[third]));
+    let length = |a: f64, b: f64| (a * a + b * b).sqrt();
+    let (along, across) = (length(q[3], q[i]), length(q[j], q[third]));
     let sum = 2.0 * q[i].atan2(q[3]);
     let difference = 2.0 * (parity * q[third]).atan2(q[j]);
 
