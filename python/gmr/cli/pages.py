@@ -81,7 +81,7 @@ def _size(of: Description) -> str:
 def _up(of: Description) -> str:
     if of.up_guess is None:
         return ""
-    reason = "from feet to head" if of.up_guess.sure else "the body's longest side: a weak guess"
+    reason = "from the feet up" if of.up_guess.sure else "the body's longest side: a weak guess"
     return f"{of.up_guess.axis}, {reason}"
 
 
