@@ -18,8 +18,11 @@ CLAIMS: Final[dict[str, Callable[[int], Iterator[Contest]]]] = {
     "fk": forward_kinematics.positions,
     "fk-rows": forward_kinematics.positions_from_rows,
     "fk-frames": forward_kinematics.frame_cost,
-    "search": search.near_manifold,
-    "search-hard": search.off_manifold,
+    "search": search.near,
+    "search-hard": search.hard,
+    "search-rows": search.growth,
+    "search-calls": search.calls,
+    "search-build": search.build,
     "trials": trials.constant_trials,
 }
 """What can be measured, by the name that the command line takes."""

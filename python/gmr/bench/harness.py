@@ -26,6 +26,8 @@ class Contest:
         peers: the peers' calls, by name.
         targets: the least ratio to reach against a peer, by name.
         absent: peers that are not installed, by name: how to install them.
+        peer_amount: how much of the unit one call of a peer does, where a whole ``amount`` would take them
+            too long; None for as much as ours.
         all_cores: whether gmr may use all processors (the peers use what they use).
     """
 
@@ -36,6 +38,7 @@ class Contest:
     peers: Mapping[str, Work] = field(default_factory=dict)
     targets: Mapping[str, float] = field(default_factory=dict)
     absent: Mapping[str, str] = field(default_factory=dict)
+    peer_amount: float | None = None
     all_cores: bool = False
 
 
@@ -90,13 +93,15 @@ def run_contest(contest: Contest, *, rounds: int, seconds: float) -> list[Row]:
 def _row(
     contest: Contest, ours: tuple[float, float, float], peer: str, times: Mapping[str, list[float]]
 ) -> Row:
-    ratios = sorted(theirs / mine for theirs, mine in zip(times[peer], times[""], strict=True))
+    amount = contest.amount if contest.peer_amount is None else contest.peer_amount
+    share = contest.amount / amount
+    ratios = sorted(share * theirs / mine for theirs, mine in zip(times[peer], times[""], strict=True))
     return Row(
         contest.work,
         contest.unit,
         *ours,
         peer=peer,
-        theirs=contest.amount / statistics.median(times[peer]),
+        theirs=amount / statistics.median(times[peer]),
         ratio=statistics.median(ratios),
         ratio_low=ratios[0],
         ratio_high=ratios[-1],

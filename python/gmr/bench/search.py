@@ -1,99 +1,163 @@
-"""Exact nearest-neighbour search in the features of real clips, against SciPy's and FAISS's."""
+"""Exact nearest neighbours of motion-matching queries: index, peers, and how the cost grows with the rows."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
-from functools import cache
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-import gmr
 from gmr import _core
 from gmr.bench.harness import Contest
-from gmr.bench.inputs import data_folder
-from gmr.bench.peers import Peers, find_peers, label
-from gmr.demo import demo_folder
+from gmr.bench.inputs import LARGE_FRAME_COUNT
+from gmr.bench.peers import find_peers, label
+from gmr.bench.search_inputs import FeatureRows, feature_rows, hard_queries, near_queries
 
-__all__ = ["near_manifold", "off_manifold"]
+__all__ = ["build", "calls", "growth", "hard", "near"]
 
 Floats = NDArray[np.float32]
+Search = Callable[[Floats], tuple[Floats, NDArray[np.int64]]]
 
-ROW_COUNT: Final = 79_000
-QUERY_COUNT: Final = 1_000
+LARGE_ROW_COUNT = 79_000
+"""Rows that the speed targets speak of."""
 
-
-def near_manifold(frame_count: int) -> Iterator[Contest]:
-    """Queries as a controller makes them: the pose of a row, a future of a row close by, a little noise."""
-    yield from _contests(frame_count, "near the manifold", reach=10, noise=0.05)
+TARGETS = {"scipy": 15.0, "faiss": 60.0}
 
 
-def off_manifold(frame_count: int) -> Iterator[Contest]:
-    """Hard queries: the pose of one row with the future of any other."""
-    yield from _contests(frame_count, "hard", reach=None, noise=0.0)
+def near(frame_count: int) -> Iterator[Contest]:
+    """Searches 79,000 rows for queries as a controller makes them."""
+    yield _contest(feature_rows(_row_count(frame_count)), "near", near_queries, TARGETS)
 
 
-def _contests(frame_count: int, kind: str, *, reach: int | None, noise: float) -> Iterator[Contest]:
-    row_count = min(ROW_COUNT, 4 * frame_count)
-    features, is_trajectory = _features(row_count)
-    queries = _queries(features, is_trajectory, reach, noise)
-    index = _core.Index(features)
-    peers = find_peers("scipy", "faiss")
-    theirs: dict[str, Callable[[], object]] = {}
-    if "scipy" in peers:
-        theirs[label("scipy")] = _scipy_call(features, queries, index)
-    if "faiss" in peers:
-        theirs[label("faiss")] = _faiss_call(peers, features, queries)
-    targets = {} if reach is None else {label("scipy"): 15.0, label("faiss"): 60.0}
+def hard(frame_count: int) -> Iterator[Contest]:
+    """Searches 79,000 rows for what no body does."""
+    yield _contest(feature_rows(_row_count(frame_count)), "hard", hard_queries, {})
+
+
+def growth(frame_count: int) -> Iterator[Contest]:
+    """Searches 1,000 to 1,000,000 rows: cost should grow far slower than the rows."""
+    for count in (1_000, 10_000, 100_000, 1_000_000):
+        if count > 28 * frame_count:
+            return
+        rows = feature_rows(count)
+        yield _contest(rows, "near", near_queries, {})
+        yield _contest(rows, "hard", hard_queries, {})
+
+
+def calls(frame_count: int) -> Iterator[Contest]:
+    """One query a call from Python, as an interactive program asks; the slowest calls are told too."""
+    rows = feature_rows(_row_count(frame_count))
+    searches, absent = _searches(rows.features)
+    asked = near_queries(rows, 2_000)
+    single = [asked[i : i + 1] for i in range(len(asked))]
+    ours = searches.pop("")
+    p50, p99 = np.percentile([_seconds(ours, query) for query in single for _ in range(2)], [50, 99])
+
+    def call_each(search: Search, asked: list[Floats]) -> Callable[[], object]:
+        return lambda: [search(query) for query in asked]
+
     yield Contest(
-        f"search of {len(features):,} rows of {features.shape[1]}, {kind}",
-        "k queries/s",
-        len(queries) / 1e3,
-        lambda: index.search(queries, 1, threads=1),
-        theirs,
-        targets,
-        peers.absent,
+        work=f"search, one query a call: p50 {p50 * 1e6:.1f}, p99 {p99 * 1e6:.1f} us",
+        unit="k queries/s",
+        amount=len(single) / 1e3,
+        ours=call_each(ours, single),
+        peers={name: call_each(search, single[:100]) for name, search in searches.items()},
+        peer_amount=0.1,
+        absent=absent,
     )
 
 
-@cache
-def _features(row_count: int) -> tuple[Floats, NDArray[np.bool_]]:
-    """Scaled features of real clips and their mirror images, at the frame rate that gives so many rows."""
-    motions = gmr.read_folder(data_folder("locomotion") or demo_folder())
-    usual = gmr.matching.Database.build(motions, mirror=True)
-    rate = min(1000.0, max(60.0, 60.0 * 1.02 * row_count / len(usual)))
-    database = gmr.matching.Database.build(motions, mirror=True, rate=rate)
-    return np.ascontiguousarray(database.features[:row_count]), database.is_trajectory
+def build(frame_count: int) -> Iterator[Contest]:
+    """Builds the index."""
+    peers = find_peers("scipy")
+    for count in (_row_count(frame_count), 28 * frame_count):
+        rows = feature_rows(min(count, 1_000_000)).features
+        yield Contest(
+            work=f"index of {len(rows):,} rows, built",
+            unit="M rows/s",
+            amount=len(rows) / 1e6,
+            ours=lambda rows=rows: _core.Index(rows),  # type: ignore[misc]
+            peers={label("scipy"): lambda rows=rows: _tree(rows)} if "scipy" in peers else {},  # type: ignore[misc]
+            absent=peers.absent,
+        )
 
 
-def _queries(features: Floats, is_trajectory: NDArray[np.bool_], reach: int | None, noise: float) -> Floats:
-    """(Q, D): the pose of one row and the future of another, at most ``reach`` rows away (None: anywhere)."""
-    random = np.random.default_rng(1)
-    count = len(features)
-    poses = random.integers(0, count, QUERY_COUNT)
-    if reach is None:
-        futures = random.integers(0, count, QUERY_COUNT)
-    else:
-        futures = np.clip(poses + random.integers(-reach, reach + 1, QUERY_COUNT), 0, count - 1)
-    queries = np.where(is_trajectory, features[futures], features[poses])
-    return np.ascontiguousarray(queries + noise * random.standard_normal(queries.shape), np.float32)
+def _row_count(frame_count: int) -> int:
+    return LARGE_ROW_COUNT if frame_count >= LARGE_FRAME_COUNT else 2 * frame_count
 
 
-def _scipy_call(features: Floats, queries: Floats, index: _core.Index) -> Callable[[], object]:
-    """SciPy's k-d tree, all queries in one call on one thread."""
+def _contest(
+    rows: FeatureRows, kind: str, make: Callable[[FeatureRows, int], Floats], targets: dict[str, float]
+) -> Contest:
+    """A batch of queries on one thread: more than caches hold for gmr, fewer for peers that take long."""
+    count = len(rows.features)
+    asked = make(rows, 4_000)
+    theirs = asked[: 100 if count > 200_000 else 1_000]
+    searches, absent = _searches(rows.features)
+    _check_same_answers(searches, theirs)
+    ours = searches.pop("")
+    return Contest(
+        work=f"search of {count:,} rows ({rows.source}), {kind}",
+        unit="k queries/s",
+        amount=len(asked) / 1e3,
+        ours=lambda: ours(asked),
+        peers={name: lambda search=search: search(theirs) for name, search in searches.items()},  # type: ignore[misc]
+        peer_amount=len(theirs) / 1e3,
+        targets={label(name): ratio for name, ratio in targets.items()},
+        absent=absent,
+    )
+
+
+def _searches(features: Floats) -> tuple[dict[str, Search], dict[str, str]]:
+    """gmr's search (named "") and the peers', each on one thread; and the peers that are missing."""
+    peers = find_peers("scipy", "faiss")
+    index = _core.Index(features)
+    found: dict[str, Search] = {"": lambda asked: index.search(asked, threads=1)}
+    if "scipy" in peers:
+        tree = _tree(features)
+        found[label("scipy")] = lambda asked: _squared(*tree.query(asked, workers=1))
+    if "faiss" in peers:
+        faiss = peers["faiss"]
+        faiss.omp_set_num_threads(1)
+        flat = faiss.IndexFlatL2(features.shape[1])
+        flat.add(features)
+        found[label("faiss")] = lambda asked: flat.search(asked, 1)
+    found["numpy"] = lambda asked: _numpy_search(features, asked)
+    return found, peers.absent
+
+
+def _tree(features: Floats) -> Any:
     from scipy.spatial import cKDTree
 
-    tree = cKDTree(features)
-    distances, _ = tree.query(queries, workers=1)
-    np.testing.assert_allclose(index.search(queries, 1)[0][:, 0], distances**2, rtol=1e-4, atol=1e-5)
-    return lambda: tree.query(queries, workers=1)
+    return cKDTree(features)
 
 
-def _faiss_call(peers: Peers, features: Floats, queries: Floats) -> Callable[[], object]:
-    """FAISS's flat index, one thread and one query a call: a character's next query needs the last answer."""
-    faiss: Any = peers["faiss"]
-    faiss.omp_set_num_threads(1)
-    flat = faiss.IndexFlatL2(features.shape[1])
-    flat.add(features)
-    return lambda: [flat.search(queries[i : i + 1], 1) for i in range(len(queries))]
+def _squared(distances: NDArray[np.float64], frames: NDArray[np.int64]) -> tuple[Floats, NDArray[np.int64]]:
+    return np.square(distances).astype(np.float32), frames
+
+
+def _numpy_search(features: Floats, asked: Floats) -> tuple[Floats, NDArray[np.int64]]:
+    """Each query against every row, as one writes it in NumPy."""
+    costs = np.empty(len(asked), np.float32)
+    frames = np.empty(len(asked), np.int64)
+    for i, query in enumerate(asked):
+        difference = features - query
+        all_costs = np.einsum("nd,nd->n", difference, difference)
+        frames[i] = all_costs.argmin()
+        costs[i] = all_costs[frames[i]]
+    return costs, frames
+
+
+def _check_same_answers(searches: dict[str, Search], asked: Floats) -> None:
+    ours = searches[""](asked)[0].ravel()
+    for name, search in searches.items():
+        # FAISS expands the square, which cancels: its costs near zero keep few digits.
+        np.testing.assert_allclose(np.ravel(search(asked)[0]), ours, rtol=1e-3, atol=1e-3, err_msg=name)
+
+
+def _seconds(search: Search, query: Floats) -> float:
+    begun = time.perf_counter()
+    search(query)
+    return time.perf_counter() - begun
