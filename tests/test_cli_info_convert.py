@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import gmr
-from gmr.cli import gmr as command
+from gmr.cli.commands import gmr as command
 from gmr.cli.common import finished
 from gmr.sides import pair_joints
 
@@ -279,7 +279,7 @@ def test_help_teaches_with_examples(capsys: Captured) -> None:
 def test_help_does_not_wait_for_numpy() -> None:
     code = """
 import sys
-from gmr.cli import gmr
+from gmr.cli.commands import gmr
 from gmr.cli.common import finished
 finished(gmr, ["--help"])
 sys.exit("numpy" in sys.modules)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from gmr.cli import gmr as command
+from gmr.cli.commands import gmr as command
 from gmr.cli.common import finished
 from locomotion import Arc
 from walker import write_walkers
@@ -111,7 +111,10 @@ def test_a_broken_file_is_named_and_the_exit_code_is_1(folder: Path, capsys: Cap
         (("takes", "--speeds", "fast"), "neither START:STOP:STEP nor numbers"),
         (("takes", "--speeds", "1:3:0"), "no list of numbers"),
         (("takes", "--speeds", "3:1:1"), "no list of numbers"),
-        (("takes", "--speeds", "0,1"), "above 0 m/s"),
+        (("takes", "--speeds", "0,1"), "from 0.01 to 100 m/s"),
+        (("takes", "--speeds", "1e30"), "1e+30 is not"),
+        (("takes", "--unit", "banana"), "no unit 'banana'"),
+        (("takes", "--name", "paw=LeftFoot"), "no role is called 'paw'"),
         (("takes", "--turn-rates", "nan"), "turn rate must be"),
         (("takes", "--name", "left_foot"), "ROLE=JOINT"),
         (("takes", "--preset", "mig2023"), "mig2022"),
@@ -194,6 +197,7 @@ def test_a_disk_that_fills_up_is_one_sentence_and_leaves_nothing(folder: Path, t
         check=False,
     )
     assert done.returncode == 1
+    assert f"gmr: {tmp_path / 'tables'}: " in done.stderr
     assert "(while writing tables); no file was left half-written" in done.stderr
     assert done.stderr.count("\n") == 1
     assert not (tmp_path / "tables").exists()

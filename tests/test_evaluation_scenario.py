@@ -47,7 +47,9 @@ def test_as_many_steps_are_recorded_as_the_recording_lasts() -> None:
     [
         ((), (0.0,), "even", "at least one speed"),
         ((1.0,), (), "even", "at least one turn rate"),
-        ((0.0,), (0.0,), "even", "above 0 m/s; 0 is not"),
+        ((0.0,), (0.0,), "even", "from 0.01 to 100 m/s; 0 is not"),
+        ((1e30,), (0.0,), "even", "1e.30 is not"),
+        ((1e-9,), (0.0,), "mig2022", "1e-09 is not"),
         ((-1.0,), (0.0,), "even", "-1 is not"),
         ((float("nan"),), (0.0,), "even", "nan is not"),
         ((1.0,), (float("inf"),), "even", "inf is not"),

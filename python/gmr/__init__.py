@@ -5,7 +5,6 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from gmr._core import __version__
 from gmr.errors import (
     DatasetError,
     FormatError,
@@ -17,6 +16,7 @@ from gmr.errors import (
 
 if TYPE_CHECKING:
     from gmr import evaluation, matching
+    from gmr._core import __version__
     from gmr.channels import ChannelLayout
     from gmr.concatenation import concatenate
     from gmr.evaluation.evaluate import evaluate
@@ -48,12 +48,14 @@ __all__ = [
     "write",
 ]
 
-# What needs NumPy is imported when first used, so that `gmr --help` answers at once.
+# What needs NumPy or the core is imported when first used: `gmr --help` answers at once, and an instruction
+# set that this machine has not (GMR_ISA) is the command line's to explain.
 _HOMES = {
     "ChannelLayout": "gmr.channels",
     "Evaluation": "gmr.evaluation.result",
     "Motion": "gmr.motion",
     "Skeleton": "gmr.skeleton",
+    "__version__": "gmr._core",
     "concatenate": "gmr.concatenation",
     "evaluate": "gmr.evaluation.evaluate",
     "forward_kinematics": "gmr.kinematics",

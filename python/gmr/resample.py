@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["nominal_fps", "resample"]
 
+_MOST_FRAMES = 10**8
+"""More would be days of capture and not fit into memory; what asks for them is a slip of the pen."""
+
 _PRINTED = 1e-4
 """How far a printed frame time may be from the rate that was meant: .0083333 is 120 fps, 0.0333 is not 30."""
 
@@ -45,7 +48,7 @@ def resample(motion: Motion, fps: float) -> Motion:
         A new motion; the same one where it has this rate already.
 
     Raises:
-        GmrError: the rate is not above 0, or the motion has a frame time of 0.
+        GmrError: the rate is not above 0 or absurdly high, or the motion has a frame time of 0.
     """
     if not (math.isfinite(fps) and fps > 0):
         raise GmrError(f"a motion cannot be resampled to {fps} frames a second; give a rate above 0")
@@ -59,6 +62,11 @@ def resample(motion: Motion, fps: float) -> Motion:
     if math.isclose(step, round(step), rel_tol=1e-9):
         return replace(motion[:: round(step)], frame_time=1 / fps)
     last = max(motion.frame_count - 1, 0)
+    if last / step > _MOST_FRAMES:
+        raise GmrError(
+            f"{motion.name or 'this motion'} would have {last / step:.3g} frames at {fps:g} frames a second; "
+            "give a lower rate"
+        )
     count = math.floor(last / step * (1 + 1e-12)) + 1 if motion.frame_count else 0
     times = np.minimum(np.arange(count) * step, last)
     dropped = None if motion.dropped is None else motion.dropped.without_rows()

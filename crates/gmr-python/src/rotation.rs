@@ -4,7 +4,7 @@ use gmr_core::lanes::Real;
 use gmr_core::rotation::{self, EulerColumns};
 use numpy::{
     Element, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
-    PyUntypedArrayMethods,
+    PyUntypedArrayMethods, dtype,
 };
 use pyo3::prelude::*;
 
@@ -48,7 +48,7 @@ fn quaternions_to_euler<'py>(
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
     let axes = triples(&axes, "axes")?;
     let quaternions = input::<f64>(quaternions.as_any(), "quaternions", 4)?;
-    let degrees = PyArray3::zeros(py, [quaternions.shape()[0], quaternions.shape()[1], 3], false);
+    let degrees = zeros::<f64>(py, [quaternions.shape()[0], quaternions.shape()[1], 3])?;
     let mut writing = degrees.readwrite();
     let (quaternions, out) = (quaternions.as_slice()?, writing.as_slice_mut()?);
     py.detach(|| rotation::quaternions_to_euler(quaternions, &axes, out)).map_err(value_error)?;
@@ -76,12 +76,18 @@ fn resample<'py, T: Real + Element>(
     times: &[f64],
 ) -> PyResult<Bound<'py, PyAny>> {
     let slot_count = quaternions.shape()[1];
-    let frames = PyArray3::<T>::zeros(py, [times.len(), slot_count, 4], false);
+    let frames = zeros::<T>(py, [times.len(), slot_count, 4])?;
     let mut writing = frames.readwrite();
     let (quaternions, out) = (quaternions.as_slice()?, writing.as_slice_mut()?);
     py.detach(|| rotation::slerp_frames(quaternions, slot_count, times, out)).map_err(value_error)?;
     drop(writing);
     Ok(frames.into_any())
+}
+
+/// An array made by NumPy itself, whose MemoryError is raised where it does not fit; `PyArray3::zeros` would panic.
+fn zeros<T: Element>(py: Python<'_>, shape: [usize; 3]) -> PyResult<Bound<'_, PyArray3<T>>> {
+    let array = py.import("numpy")?.call_method1("zeros", (shape.to_vec(), dtype::<T>(py)))?;
+    Ok(array.cast_into()?)
 }
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

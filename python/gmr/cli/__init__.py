@@ -1,55 +1,21 @@
-"""The command line: a command is a module here with a click command of its name, and one line in COMMANDS.
-
-Command modules import NumPy and the rest of gmr inside their functions, so that help answers at once.
-"""
+"""The command line: nothing is imported here before an interrupt can be answered."""
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import Final
-
-import click
-
-from gmr import __version__
-from gmr.cli.common import finished
-
-__all__ = ["gmr", "main"]
-
-COMMANDS: Final = ("evaluate", "info", "convert", "bench", "demo")
-
-
-class Commands(click.Group):
-    """The commands, each imported when it is asked for."""
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Their names, in the order in which a newcomer needs them."""
-        return list(COMMANDS)
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """The command of that name; None where there is none."""
-        if cmd_name not in COMMANDS:
-            return None
-        command: click.Command = getattr(import_module(f"gmr.cli.{cmd_name}"), cmd_name)
-        return command
-
-
-@click.command(
-    cls=Commands,
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
-    epilog="Exit codes: 0 done, 1 some inputs failed (named on stderr), 2 wrong usage.",
-)
-@click.version_option(__version__, prog_name="gmr")
-def gmr() -> None:
-    """Motion capture at memory speed: look into motions, convert them, measure what a set of them can do.
-
-    \b
-    gmr info walk.bvh             what is in a file, and what is odd about it
-    gmr convert takes/ out/ --fps 60 --mirror
-    gmr evaluate takes/           what a set of locomotion clips can do, as a report
-    gmr COMMAND --help            more examples
-    """
+__all__ = ["main"]
 
 
 def main(args: list[str] | None = None) -> None:
     """Run the command line and leave the process with its exit code."""
-    raise SystemExit(finished(gmr, args))
+    try:
+        from gmr.cli.commands import gmr
+        from gmr.cli.common import finished
+
+        code = finished(gmr, args)
+    except KeyboardInterrupt:
+        # Before or after the command itself, which answers an interrupt in the same words.
+        import sys
+
+        sys.stderr.write("gmr: interrupted; no file was left half-written\n")
+        code = 130
+    raise SystemExit(code)

@@ -17,7 +17,7 @@ Examples:
 """
 
 
-@click.command(epilog=EXAMPLES)
+@click.command(short_help="Measure gmr against its peers on this machine.", epilog=EXAMPLES)
 @click.argument("claims", nargs=-1)
 @click.option("--smoke", is_flag=True, help="Small inputs, one round: shows that all runs, measures nothing.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the table.")

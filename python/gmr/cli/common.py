@@ -17,7 +17,7 @@ from gmr.errors import FormatWarning, GmrError
 if TYPE_CHECKING:
     from gmr.motion import Motion
 
-__all__ = ["Failures", "files_of", "finished", "progress", "read_input", "read_noting", "say"]
+__all__ = ["Failures", "Unit", "files_of", "finished", "progress", "read_input", "read_noting", "say"]
 
 Item = TypeVar("Item")
 
@@ -27,6 +27,7 @@ INTERRUPTED = 130
 
 def finished(command: click.Command, args: list[str] | None = None) -> int:
     """Runs a command and tells its exit code; every expected trouble is one sentence on stderr."""
+    _open_closed_streams()
     try:
         code = command.main(args, standalone_mode=False)
         sys.stdout.flush()
@@ -43,15 +44,46 @@ def finished(command: click.Command, args: list[str] | None = None) -> int:
     except GmrError as error:
         say(str(error))
         return 1
+    except ImportError as error:
+        if error.name is not None:
+            raise  # a module is missing: a fault of the installation, to be seen with all that led to it
+        # The core itself refuses: GMR_ISA asks for what this machine has not.
+        say(str(error))
+        return 1
     except OSError as error:
         say(f"{error.filename or 'standard output'}: {error.strerror}")
         return 1
+    except MemoryError:
+        say("this does not fit into the memory of this machine; give less at a time")
+        return 1
     return code if isinstance(code, int) else 0
+
+
+def _open_closed_streams() -> None:
+    """A standard stream that the caller has closed is empty or goes nowhere; Python has None in its place."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open(mode))  # noqa: SIM115  (open as long as the program)
 
 
 def say(sentence: str) -> None:
     """One sentence on stderr."""
     click.echo(f"gmr: {sentence}", err=True)
+
+
+class Unit(click.ParamType[float]):
+    """A unit of length, by its name or in metres."""
+
+    name = "UNIT"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Metres per unit."""
+        from gmr.units import metres_per_unit
+
+        try:
+            return metres_per_unit(value)
+        except GmrError as error:
+            self.fail(str(error), param, ctx)
 
 
 class Failures:
@@ -66,8 +98,10 @@ class Failures:
         try:
             yield
         except GmrError as error:
-            self.errors[name] = str(error)
-            say(str(error))
+            place = "<stdin>" if name == STDIO else name
+            why = str(error) if place in str(error) else f"{place}: {error}"
+            self.errors[name] = why
+            say(why)
 
     def exit_code(self) -> int:
         """1 where an input failed, else 0."""

@@ -9,27 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gmr.cli.common import STDIO, Failures, files_of, progress, read_noting, say
+from gmr.cli.common import STDIO, Failures, Unit, files_of, progress, read_noting, say
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
 
 __all__ = ["convert"]
-
-
-class _Unit(click.ParamType[float]):
-    """A unit of length, by its name or in metres."""
-
-    name = "UNIT"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        from gmr.errors import GmrError
-        from gmr.units import metres_per_unit
-
-        try:
-            return metres_per_unit(value)
-        except GmrError as error:
-            self.fail(str(error), param, ctx)
 
 
 class _Rate(click.ParamType[float]):
@@ -62,10 +47,10 @@ class _Changes:
 @click.argument("source", metavar="IN")
 @click.argument("target", metavar="OUT")
 @click.option("--fps", type=_Rate(), help="Resample to this rate: rotations by slerp.")
-@click.option("--unit", type=_Unit(), help="Convert to this unit: m, cm, mm, in, ft, cmu or metres per unit.")
+@click.option("--unit", type=Unit(), help="Convert to this unit: m, cm, mm, in, ft, cmu or metres per unit.")
 @click.option(
     "--from-unit",
-    type=_Unit(),
+    type=Unit(),
     help="The unit that IN is in; guessed from the body, and said, otherwise.",
 )
 @click.option("--mirror", is_flag=True, help="Write the mirror image, left for right.")
@@ -102,6 +87,8 @@ def convert(
       gmr convert walk.bvh lean.bvh --drop-dummies
       gmr convert - - --fps 30 < walk.bvh > walk30.bvh
     """
+    if from_unit is not None and unit is None:
+        raise click.UsageError("--from-unit says what --unit converts from; give --unit too")
     changes = _Changes(fps, unit, from_unit, drop_dummies, mirror)
     failures = Failures()
     guessed: dict[str, list[str]] = {}

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 
-@click.command()
+@click.command(short_help="Evaluate the clips that ship with gmr.")
 @click.option(
     "--out",
     type=click.Path(dir_okay=False, path_type=Path),

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import click
 
-from gmr.cli.common import say
+from gmr.cli.common import Unit, say
 from gmr.cli.progress import Phases
 from gmr.errors import GmrError
 
@@ -29,7 +29,7 @@ EXAMPLES: Final = """
 Examples:
   gmr evaluate takes/                          report.html beside you
   gmr evaluate takes/ --mirror -o walks.html   with the mirror image of every clip
-  gmr evaluate takes/ --tables figures/        every number as CSV and JSON too
+  gmr evaluate takes/ --tables figures/        every number as CSV and Parquet too
   gmr evaluate takes/ --speeds 0.5:4:0.5 --turn-rates -180:180:45
   gmr evaluate takes/ --preset mig2022         the pacing of the paper's authors
   gmr evaluate takes/ --name left_foot=foot_l --name right_foot=foot_r
@@ -67,6 +67,11 @@ def _roles(context: click.Context, option: click.Parameter, pairs: tuple[str, ..
         if not (role and joint):
             raise click.BadParameter(f"{text!r} is not ROLE=JOINT, as in left_foot=foot_l.")
         roles[role] = joint
+    if roles:
+        from gmr.body.naming import ROLES
+
+        if unknown := [role for role in roles if role not in ROLES]:
+            raise click.BadParameter(f"no role is called '{unknown[0]}'; the roles are {', '.join(ROLES)}.")
     return roles
 
 
@@ -112,7 +117,9 @@ def _roles(context: click.Context, option: click.Parameter, pairs: tuple[str, ..
     callback=_roles,
     help="Say which joint is the hips, left_up_leg, right_up_leg, left_foot or right_foot. Repeatable.",
 )
-@click.option("--unit", help="Unit of length of the files: m, cm, mm, in, ft, cmu, or metres per unit.")
+@click.option(
+    "--unit", type=Unit(), help="Unit of length of the files: m, cm, mm, in, ft, cmu, or metres per unit."
+)
 @click.option("--threads", type=click.IntRange(min=1), help="How many to use.  [default: all cores]")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the verdict.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
@@ -127,7 +134,7 @@ def evaluate(
     turn_rates: tuple[float, ...] | None,
     preset: str | None,
     names: dict[str, str],
-    unit: str | None,
+    unit: float | None,
     threads: int | None,
     as_json: bool,
     quiet: bool,
@@ -143,7 +150,7 @@ def evaluate(
     from gmr.evaluation.scenario import DEFAULT_SPEEDS, DEFAULT_TURN_RATES_DEG, constant_trials
 
     try:
-        constant_trials(speeds or DEFAULT_SPEEDS, turn_rates or DEFAULT_TURN_RATES_DEG)
+        constant_trials(speeds or DEFAULT_SPEEDS, turn_rates or DEFAULT_TURN_RATES_DEG, preset or "even")
     except ValueError as error:
         raise click.UsageError(f"{error}.") from error
     phases = Phases(quiet)
@@ -157,7 +164,7 @@ def evaluate(
             turn_rates_deg=turn_rates,
             threads=threads,
             names=names,
-            unit=_number_or_name(unit),
+            unit=unit,
             progress=phases.tell,
         )
         written = _write(found, None if no_report else out, tables, phases)
@@ -173,12 +180,14 @@ def _write(found: Evaluation, out: Path | None, tables: Path | None, phases: Pha
     if tables is not None:
         phases.tell("writing tables", 0, 1)
         columnar = "parquet" if _has_pyarrow() else "json"
-        written["tables"] = [str(path) for path in found.write_tables(tables, ("csv", columnar))]
+        with _naming(tables):
+            written["tables"] = [str(path) for path in found.write_tables(tables, ("csv", columnar))]
         phases.tell("writing tables", 1, 1)
     if out is not None:
         phases.tell("writing the report", 0, 1)
-        out.parent.mkdir(parents=True, exist_ok=True)
-        found.report(out)
+        with _naming(out):
+            out.parent.mkdir(parents=True, exist_ok=True)
+            found.report(out)
         written["report"] = str(out)
         phases.tell("writing the report", 1, 1)
     return written
@@ -236,11 +245,14 @@ def _finite(row: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _number_or_name(unit: str | None) -> float | str | None:
+@contextmanager
+def _naming(place: Path) -> Iterator[None]:
+    """An error of a disk names no file when it comes from writing into an open one: it is given ``place``."""
     try:
-        return None if unit is None else float(unit)
-    except ValueError:
-        return unit
+        yield
+    except OSError as error:
+        error.filename = error.filename or str(place)
+        raise
 
 
 @contextmanager

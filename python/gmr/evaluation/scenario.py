@@ -27,6 +27,10 @@ DEFAULT_SPEEDS: Final = tuple(1 + 0.25 * step for step in range(9))
 DEFAULT_TURN_RATES_DEG: Final = tuple(25.0 * step for step in range(-4, 5))
 """The paper's turn rates, degrees per second, positive to the left."""
 
+SLOWEST: Final = 0.01
+FASTEST: Final = 100.0
+"""Metres per second; a slower character would take days for a run-up of ten metres, none is faster."""
+
 MOST_TRIALS: Final = 2_000
 """More would not fit into the memory of a small machine: with its figures a trial takes 0.7 MB."""
 
@@ -102,8 +106,8 @@ def constant_trials(
     """The grid of trials that keep one speed and one turn rate (the paper's first scenario).
 
     Args:
-        speeds: metres per second, above 0.
-        turn_rates_deg: degrees per second, positive to the left.
+        speeds: metres per second, from 0.01 to 100.
+        turn_rates_deg: degrees per second, positive to the left, within 720.
         preset: "even": 3 s of run-up, 2 s to settle, 30 s recorded, whatever the turn rate;
             "mig2022": the durations of the paper's authors.
 
@@ -111,12 +115,12 @@ def constant_trials(
         One trial for every pair, turn rates running fastest, both ascending.
 
     Raises:
-        ValueError: no speed or no turn rate, one that is not finite or given twice, a speed that is not above
-            0, too many pairs, or an unknown preset.
+        ValueError: no speed or no turn rate, one that is not finite or given twice, a speed that is not from
+            0.01 to 100, too many pairs, or an unknown preset.
     """
     if preset not in PRESETS:
         raise ValueError(f"unknown preset {preset!r}; known are {', '.join(PRESETS)}")
-    _check("speed", speeds, lambda speed: speed > 0, "above 0 m/s")
+    _check("speed", speeds, lambda speed: SLOWEST <= speed <= FASTEST, f"from {SLOWEST:g} to {FASTEST:g} m/s")
     _check("turn rate", turn_rates_deg, lambda rate: abs(rate) <= 720, "within 720 degrees/s")
     if len(speeds) * len(turn_rates_deg) > MOST_TRIALS:
         raise ValueError(

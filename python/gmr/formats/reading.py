@@ -62,6 +62,8 @@ def _contents(source: Source, any_suffix: bool) -> tuple[str | None, bytes]:
         if not any_suffix and path.is_file():
             format_of_file(str(path))
         return str(path), _file_contents(path)
+    if not hasattr(source, "read"):
+        raise TypeError(f"a motion is read from a path, bytes or an open file, not from {source!r:.60}")
     data = source.read()
     name = getattr(source, "name", None)
     return name if isinstance(name, str) else None, data.encode() if isinstance(data, str) else data
@@ -72,6 +74,11 @@ def _file_contents(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except FileNotFoundError:
+        if path.is_symlink():
+            what = (
+                f"this is a link to '{path.readlink()}', which is not there; put it there, or remove the link"
+            )
+            raise FormatError(what, file=str(path)) from None
         raise FormatError(f"there is no such file{_nearest(path)}", file=str(path)) from None
     except IsADirectoryError:
         raise FormatError(
