@@ -94,6 +94,12 @@ def test_a_link_that_leads_nowhere_is_called_one(tmp_path: Path, capsys: Capture
     assert "walk.bvh: this is a link to 'gone.bvh', which is not there" in capsys.readouterr().err
 
 
+def test_a_place_that_cannot_be_written_to_is_the_only_one_named(walk_path: Path, capsys: Captured) -> None:
+    out = Path(os.devnull) / "out.bvh"
+    assert run("convert", walk_path, out) == 1
+    assert capsys.readouterr().err.startswith(f"gmr: {out}: ")
+
+
 @pytest.mark.parametrize("closed", [0, 1, 2])
 def test_a_closed_standard_stream_does_no_harm(walk_path: Path, closed: int) -> None:
     reads = "-" if closed == 0 else walk_path

@@ -98,10 +98,8 @@ class Failures:
         try:
             yield
         except GmrError as error:
-            place = "<stdin>" if name == STDIO else name
-            why = str(error) if place in str(error) else f"{place}: {error}"
-            self.errors[name] = why
-            say(why)
+            self.errors[name] = str(error)
+            say(str(error))
 
     def exit_code(self) -> int:
         """1 where an input failed, else 0."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -98,7 +100,9 @@ def convert(
                 motion, warnings = read_noting(path, positions=positions, strict=strict)
                 for warning in warnings:
                     say(warning)
-                _write(_changed(motion, changes, guessed), out)
+                with _naming(motion):
+                    motion = _changed(motion, changes, guessed)
+                _write(motion, out)
     for guess, names in guessed.items():
         say(f"{_several(names)} taken to be in {guess}; state another unit with --from-unit")
     return failures.exit_code()
@@ -128,6 +132,19 @@ def _check_suffix(target: str) -> None:
         format_of_file(target)
     except FormatError as error:
         raise click.UsageError(str(error)) from error
+
+
+@contextmanager
+def _naming(motion: Motion) -> Iterator[None]:
+    """An error about joints or frames names the motion too."""
+    from gmr.errors import GmrError
+
+    try:
+        yield
+    except GmrError as error:
+        if str(motion.name) in str(error):
+            raise
+        raise GmrError(f"{motion.name}: {error}") from error
 
 
 def _changed(motion: Motion, changes: _Changes, guessed: dict[str, list[str]]) -> Motion:

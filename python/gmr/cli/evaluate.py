@@ -247,11 +247,11 @@ def _finite(row: Mapping[str, Any]) -> dict[str, Any]:
 
 @contextmanager
 def _naming(place: Path) -> Iterator[None]:
-    """An error of a disk names no file when it comes from writing into an open one: it is given ``place``."""
+    """An error of a disk names no file, or one that was only there while writing: it is given ``place``."""
     try:
         yield
     except OSError as error:
-        error.filename = error.filename or str(place)
+        error.filename = str(place)
         raise
 
 
