@@ -118,3 +118,39 @@ def test_a_subset_of_joints_is_a_part_of_the_whole(case: Case, data: st.DataObje
         np.array(joints, np.int32), None, part,
     )  # fmt: skip
     np.testing.assert_array_equal(part, whole[:, joints])
+
+
+def test_arrays_that_do_not_fit_are_refused_and_never_read_beyond() -> None:
+    case = random_case(9, 4, 6)
+    topology = _core.Topology(case.parents, case.slots, case.slot_count)
+    out = np.empty((6, 4, 3))
+    frozen = out.copy()
+    frozen.flags.writeable = False
+    good = (topology, case.rotations, case.translated, case.translations, case.offsets)
+    wrong: list[tuple[Any, type[Exception], str]] = [
+        ({1: case.rotations[:5]}, ValueError, "translations holds"),
+        ({1: case.rotations[:, ::-1]}, ValueError, "C-contiguous"),
+        ({1: case.rotations[..., :3].copy()}, ValueError, r"\(frames, N, 4\)"),
+        ({1: case.rotations.astype(">f8")}, TypeError, "rotations"),
+        ({3: case.translations.astype(np.float32)}, TypeError, "translations"),
+        ({4: case.offsets[:2]}, ValueError, "offsets holds 6 elements where 12"),
+        ({4: case.offsets.astype(int)}, TypeError, "offsets"),
+        ({5: np.array([4], np.int32)}, ValueError, "joints holds 4"),
+        ({7: out[:, :3].copy()}, ValueError, "positions holds"),
+        ({7: out.astype(np.float32)}, TypeError, "positions_out"),
+        ({7: frozen}, ValueError, "positions_out"),
+        ({8: case.rotations}, ValueError, "rotations_out: .*already borrowed"),
+    ]
+    for changes, error, message in wrong:
+        arguments: list[Any] = [*good, None, None, out, None]
+        for place, value in changes.items():
+            arguments[place] = value
+        with pytest.raises(error, match=message):
+            _core.forward_kinematics(*arguments)
+
+
+@pytest.mark.parametrize(("joints", "frames"), [(0, 0), (0, 7), (3, 0)])
+def test_no_joints_and_no_frames_are_solved_at_once(joints: int, frames: int) -> None:
+    case = random_case(2, joints, frames)
+    positions, rotations, _ = run(case, np.float32)
+    assert positions.size == rotations.size == 0
