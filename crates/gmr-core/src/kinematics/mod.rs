@@ -61,7 +61,7 @@ pub struct ForwardKinematics<'a, T> {
     pub topology: &'a Topology,
     /// (J, 3): the vector from its parent to each joint (a root: its place), where it is not translated per frame.
     pub offsets: &'a [f64],
-    /// (T,): the joints that are translated per frame.
+    /// (T,): the joints that are translated per frame; of one listed twice the last counts.
     pub translated: &'a [i32],
     /// Their poses.
     pub pose: Pose<'a, T>,

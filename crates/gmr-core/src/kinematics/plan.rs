@@ -4,7 +4,7 @@ use super::ForwardKinematics;
 use crate::error::{JobError, ShapeError};
 use crate::lanes::Real;
 use crate::rotation::check_indices;
-use crate::skeleton::NONE;
+use crate::skeleton::{NONE, Topology};
 
 /// A slot and the bones it turns; indices into the plan's own, shorter lists unless said otherwise.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -61,32 +61,9 @@ impl<T: Real> Plan<T> {
         let wanted: Vec<i32> = slots.iter().copied().chain(turning).collect();
         let needed_slots = with_ancestors(&wanted, topology.slot_parents());
 
-        let mut plan = Self { turns: vec![], bones: vec![], joints_out: vec![], slots_out: vec![] };
-        let mut turn_of = vec![None; slot_count];
-        plan.turns.push(Turn { slot: None, above: None, bones: 0..0 });
-        for slot in topology.slot_order().iter().map(|&slot| slot as usize).filter(|&s| needed_slots[s]) {
-            let above = index(topology.slot_parents()[slot]).and_then(|above| turn_of[above]);
-            turn_of[slot] = Some(plan.turns.len());
-            plan.turns.push(Turn { slot: Some(slot), above, bones: 0..0 });
-        }
-
-        let turn = |joint: usize| index(topology.world_slots()[joint]).and_then(|s| turn_of[s]).unwrap_or(0);
-        let in_order = topology.order().iter().map(|&joint| joint as usize);
-        let mut order: Vec<usize> = in_order.filter(|&joint| needed_joints[joint]).collect();
-        order.sort_by_key(|&joint| turn(joint));
-        let mut bone_of = vec![None; joint_count];
-        for joint in order {
-            let bone = plan.bones.len();
-            bone_of[joint] = Some(bone);
-            plan.bones.push(Bone {
-                parent: index(topology.parents()[joint]).and_then(|parent| bone_of[parent]),
-                offset: std::array::from_fn(|axis| T::from_f64(job.offsets[3 * joint + axis])),
-                translated: translated[joint],
-            });
-            let bones = &mut plan.turns[turn(joint)].bones;
-            bones.start = if bones.start == bones.end { bone } else { bones.start };
-            bones.end = bone + 1;
-        }
+        let (turns, turn_of) = turns(topology, &needed_slots);
+        let mut plan = Self { turns, bones: vec![], joints_out: vec![], slots_out: vec![] };
+        let bone_of = plan.hang_bones(job, &needed_joints, &turn_of, &translated);
         plan.joints_out = joints.iter().filter_map(|&joint| bone_of[joint as usize]).collect();
         for slot in slots {
             plan.slots_out.push(match index(slot) {
@@ -96,6 +73,48 @@ impl<T: Real> Plan<T> {
         }
         Ok(plan)
     }
+
+    /// Gives each turn its bones; where each joint's bone stands.
+    fn hang_bones(
+        &mut self,
+        job: &ForwardKinematics<'_, T>,
+        is_needed: &[bool],
+        turn_of: &[Option<usize>],
+        translated: &[Option<usize>],
+    ) -> Vec<Option<usize>> {
+        let topology = job.topology;
+        let turn = |joint: usize| index(topology.world_slots()[joint]).and_then(|s| turn_of[s]).unwrap_or(0);
+        let in_order = topology.order().iter().map(|&joint| joint as usize);
+        let mut order: Vec<usize> = in_order.filter(|&joint| is_needed[joint]).collect();
+        order.sort_by_key(|&joint| turn(joint));
+
+        let mut bone_of = vec![None; topology.joint_count()];
+        for joint in order {
+            let bone = self.bones.len();
+            bone_of[joint] = Some(bone);
+            self.bones.push(Bone {
+                parent: index(topology.parents()[joint]).and_then(|parent| bone_of[parent]),
+                offset: std::array::from_fn(|axis| T::from_f64(job.offsets[3 * joint + axis])),
+                translated: translated[joint],
+            });
+            let bones = &mut self.turns[turn(joint)].bones;
+            bones.start = if bones.start == bones.end { bone } else { bones.start };
+            bones.end = bone + 1;
+        }
+        bone_of
+    }
+}
+
+/// The world, and each needed slot after the one above it; and where each slot stands.
+fn turns(topology: &Topology, is_needed: &[bool]) -> (Vec<Turn>, Vec<Option<usize>>) {
+    let mut turns = vec![Turn { slot: None, above: None, bones: 0..0 }];
+    let mut turn_of = vec![None; topology.slot_count()];
+    for slot in topology.slot_order().iter().map(|&slot| slot as usize).filter(|&slot| is_needed[slot]) {
+        let above = index(topology.slot_parents()[slot]).and_then(|above| turn_of[above]);
+        turn_of[slot] = Some(turns.len());
+        turns.push(Turn { slot: Some(slot), above, bones: 0..0 });
+    }
+    (turns, turn_of)
 }
 
 fn index(index: i32) -> Option<usize> {
