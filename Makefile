@@ -3,6 +3,8 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 REPORT ?= gmr-demo/report.html
+# maturin lies in .venv/ already, so the build needs no environment of its own.
+INSTALL := . $(BIN)/activate && python -m pip install --quiet --no-build-isolation
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .PHONY: demo test build develop check-machine check-rust check-python smoke bench fuzz format clean help
@@ -53,18 +55,19 @@ SOURCES := Cargo.toml Cargo.lock pyproject.toml $(shell find crates python/gmr -
 
 # pip must be recent enough to take its build requirements from pyproject.toml.
 $(VENV)/.tools: pyproject.toml | check-machine
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade "maturin>=1.9,<2"
-	touch $@
+	@$(PYTHON) -m venv $(VENV)
+	@$(BIN)/python -m pip install --quiet --upgrade "maturin>=1.9,<2"
+	@touch $@
 
 $(VENV)/.gmr: $(VENV)/.tools $(SOURCES)
-	@echo "Building gmr (about a minute the first time) ..."
-	. $(BIN)/activate && maturin develop --release --quiet
-	touch $@
+	@echo "Building gmr (one to three minutes the first time) ..."
+	@$(INSTALL) --editable .
+	@touch $@
 
 $(VENV)/.develop: $(VENV)/.gmr
-	. $(BIN)/activate && maturin develop --release --quiet --extras report,bench,dev
-	touch $@
+	@echo "Installing what tests and benchmarks need ..."
+	@$(INSTALL) --editable ".[report,bench,dev]"
+	@touch $@
 
 check-machine:
 	@PYTHON="$(PYTHON)" tools/check_machine.sh
