@@ -177,13 +177,10 @@ impl Index {
     /// The best frame below `query.max_cost`, or none.
     ///
     /// # Errors
-    /// When the query is not of `dims` finite numbers.
+    /// When the query is not of `dims` finite numbers, or `max_cost` is NaN.
     pub fn search(&self, query: &Query) -> Result<Option<Hit>, IndexError> {
         check_query(query.features, self.dims, query.max_cost)?;
-        let start = query.limit();
-        let mut nearest = Nearest(start);
-        self.visit(query, &mut nearest);
-        Ok((nearest.0 != start).then_some(nearest.0))
+        Ok(self.nearest(query))
     }
 
     /// The better of `start` and the best frame: `start`, the continuing pose with its cost, counts as one more
@@ -204,14 +201,27 @@ impl Index {
     /// becomes [`Hit::NONE`].
     ///
     /// # Errors
-    /// When the query is not of `dims` finite numbers.
+    /// When the query is not of `dims` finite numbers, or `max_cost` is NaN.
     pub fn search_top(&self, query: &Query, hits: &mut [Hit]) -> Result<usize, IndexError> {
         check_query(query.features, self.dims, query.max_cost)?;
         Ok(self.rank(query, hits))
     }
 
+    /// As [`Index::search`], of a query that was checked.
+    fn nearest(&self, query: &Query) -> Option<Hit> {
+        let start = query.limit();
+        let mut nearest = Nearest(start);
+        self.visit(query, &mut nearest);
+        (nearest.0 != start).then_some(nearest.0)
+    }
+
     /// As [`Index::search_top`], of a query that was checked.
     fn rank(&self, query: &Query, hits: &mut [Hit]) -> usize {
+        if let [hit] = hits {
+            let found = self.nearest(query);
+            *hit = found.unwrap_or(Hit::NONE);
+            return usize::from(found.is_some());
+        }
         let mut ranked = Ranked::new(hits, query.limit());
         self.visit(query, &mut ranked);
         ranked.finish()
