@@ -257,6 +257,16 @@ fn settings() -> impl Strategy<Value = Settings> {
     )
 }
 
+#[test]
+fn a_start_without_a_past_is_kept_by_the_first_search() {
+    let database = database_with_a_past(&various());
+    for turn_rate in [-0.909_654_263_857_218_7, -0.4, 0.0, 0.7] {
+        let profile = Profile { segments: vec![segment(0.3, 0.0, turn_rate)], record_from: 0.0 };
+        let log = run_one(&database, profile, &Settings { exclude_within: 0, ..Settings::default() });
+        assert_eq!(log.steps[0].choice.status, Status::Kept, "turning at {turn_rate}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 

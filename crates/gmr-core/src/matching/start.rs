@@ -1,4 +1,4 @@
-//! The row that a trial starts on: of all candidates the one whose trajectory is nearest to what is asked for there.
+//! The row that a trial starts on: of all candidates the one whose future is nearest to what is asked for there.
 //!
 //! Its pose is whatever that row has, for there is none before it to continue. Trials of a grid begin alike, so a row
 //! that was found is kept.
@@ -22,12 +22,13 @@ impl<'a> Starts<'a> {
     /// Among the candidates that carry all of these tag bits.
     #[must_use]
     pub fn new(database: &'a Database, tags: u32) -> Self {
-        let is_trajectory = database.schema().is_trajectory();
-        let dims = (0..is_trajectory.len()).filter(|&dim| is_trajectory[dim]).collect();
+        // A character that starts has no past, so nothing can be asked of it.
+        let ahead = database.schema().trajectory().into_iter().filter(|sample| sample.frames >= 0);
+        let dims = ahead.flat_map(|sample| [sample.dim, sample.dim + 1]).collect();
         Self { database, tags, dims, known: Mutex::default() }
     }
 
-    /// The candidate of the lowest trajectory cost, the first of equals; `None` where there is no candidate.
+    /// The candidate whose future costs least, the first of equals; `None` where there is no candidate.
     #[must_use]
     pub fn row(&self, query: &[f32]) -> Option<u32> {
         let wanted: Vec<f32> = self.dims.iter().map(|&dim| query[dim]).collect();
