@@ -13,7 +13,13 @@ from gmr import _core
 from gmr.bench.harness import Contest
 from gmr.bench.inputs import LARGE_FRAME_COUNT
 from gmr.bench.peers import find_peers, label
-from gmr.bench.search_inputs import FeatureRows, feature_rows, hard_queries, near_queries
+from gmr.bench.search_inputs import (
+    FeatureRows,
+    dense_rows,
+    feature_rows,
+    hard_queries,
+    near_queries,
+)
 
 __all__ = ["build", "calls", "growth", "hard", "near"]
 
@@ -38,12 +44,14 @@ def hard(frame_count: int) -> Iterator[Contest]:
 
 def growth(frame_count: int) -> Iterator[Contest]:
     """Searches 1,000 to 1,000,000 rows: cost should grow far slower than the rows."""
+    most = min(1_000_000, 28 * frame_count)
     for count in (1_000, 10_000, 100_000, 1_000_000):
-        if count > 28 * frame_count:
-            return
+        if count > most:
+            break
         rows = feature_rows(count)
         yield _contest(rows, "near", near_queries, {})
         yield _contest(rows, "hard", hard_queries, {})
+    yield _contest(dense_rows(most), "near", near_queries, {})
 
 
 def calls(frame_count: int) -> Iterator[Contest]:

@@ -12,8 +12,9 @@ import gmr
 from gmr.bench.inputs import data_folder
 from gmr.demo import demo_folder
 from gmr.matching import Database
+from gmr.motion import Motion
 
-__all__ = ["FeatureRows", "feature_rows", "hard_queries", "near_queries"]
+__all__ = ["FeatureRows", "dense_rows", "feature_rows", "hard_queries", "near_queries"]
 
 Floats = NDArray[np.float32]
 
@@ -30,15 +31,19 @@ class FeatureRows:
     """The set that they were made of."""
 
 
-@cache
-def _real() -> tuple[FeatureRows, NDArray[np.int32]]:
-    """Candidate rows of the locomotion set below GMR_DATA, else of the shipped clips, and their clips."""
+def _motions() -> tuple[dict[str, Motion], str]:
     folder = data_folder("locomotion")
-    database = Database.build(gmr.read_folder(folder or demo_folder()), mirror=True)
+    return gmr.read_folder(folder or demo_folder()), "locomotion" if folder else "shipped clips"
+
+
+@cache
+def _real(rate: float = 60.0) -> tuple[FeatureRows, NDArray[np.int32]]:
+    """Candidate rows of the locomotion set below GMR_DATA, else of the shipped clips, and their clips."""
+    motions, name = _motions()
+    database = Database.build(motions, mirror=True, rate=rate)
     found = database.candidates
-    name = "locomotion" if folder else "shipped clips"
-    rows = FeatureRows(database.features[found], database.is_trajectory, name)
-    return rows, database.clips[found]
+    source = name if rate == 60.0 else f"{rate:.0f} fps"
+    return FeatureRows(database.features[found], database.is_trajectory, source), database.clips[found]
 
 
 @cache
@@ -60,6 +65,13 @@ def feature_rows(count: int) -> FeatureRows:
         made += len(followed)
     features = np.ascontiguousarray(np.concatenate(parts)[:count])
     return FeatureRows(features, real.is_trajectory, real.source)
+
+
+def dense_rows(count: int) -> FeatureRows:
+    """About so many rows, closer together: the real clips at a higher frame rate, at most 1,000 fps."""
+    sixty, _ = _real()
+    rows, _ = _real(min(1000.0, round(60.0 * count / len(sixty.features))))
+    return rows
 
 
 def near_queries(rows: FeatureRows, count: int) -> Floats:
