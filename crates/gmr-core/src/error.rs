@@ -56,6 +56,13 @@ pub enum JobError {
         /// The slot.
         slot: usize,
     },
+    /// A root that has no translation per frame.
+    RootAtRest {
+        /// The joint.
+        joint: usize,
+    },
+    /// Two forests that are not configurations of the same one.
+    OtherForest,
     /// An instruction set that this machine lacks.
     Isa(crate::Isa),
 }
@@ -83,6 +90,12 @@ impl fmt::Display for JobError {
                     f,
                     "slot {slot} turns no bone, so it has no world rotation; ask for slots that turn one"
                 )
+            }
+            Self::RootAtRest { joint } => {
+                write!(f, "root {joint} has no translation per frame; give every root one")
+            }
+            Self::OtherForest => {
+                f.write_str("the two configurations are of different forests; make one from the other")
             }
             Self::Isa(isa) => write!(f, "this machine cannot run {isa}"),
         }

@@ -5,6 +5,7 @@
 //! - [`rotation`]: quaternions and the twelve Euler orders.
 //! - [`lanes`]: the same arithmetic on one to sixteen frames at once, for each instruction set.
 //! - [`kinematics`]: forward kinematics of many frames at once.
+//! - [`forest`]: the General Motion Representation: any joint can be a root; shift, split, join.
 //! - [`matching`]: motion matching: features, exact search, controller, trials.
 //!
 //! Conventions: right-handed, Y up, forward +Z; column vectors; quaternions `(x, y, z, w)`;
@@ -12,6 +13,7 @@
 //! frames first, then joints, then components. Nothing here knows of Python.
 
 pub mod error;
+pub mod forest;
 pub mod isa;
 pub mod kinematics;
 pub mod lanes;
@@ -22,5 +24,6 @@ pub mod rotation;
 pub mod skeleton;
 
 pub use error::{JobError, ShapeError, TopologyError};
+pub use forest::Forest;
 pub use isa::Isa;
 pub use skeleton::Topology;

@@ -16,10 +16,11 @@ use crate::parallel::{for_each_piece, thread_count};
 use crate::rotation::EulerColumns;
 use crate::skeleton::Topology;
 
-mod block;
-mod plan;
+pub(crate) mod block;
+pub(crate) mod plan;
 mod roots;
-mod scalar;
+pub(crate) mod scalar;
+pub(crate) mod source;
 #[cfg(test)]
 mod tests;
 
@@ -140,22 +141,22 @@ pub fn forward_kinematics_on<T: Real>(
 }
 
 /// What a thread takes at a time: a whole number of blocks of every instruction set.
-const FRAMES_PER_PIECE: usize = 1024;
+pub(crate) const FRAMES_PER_PIECE: usize = 1024;
 
 /// A piece of an array, until a thread takes it.
-type Piece<'a, T> = Mutex<Option<&'a mut [T]>>;
+pub(crate) type Piece<'a, T> = Mutex<Option<&'a mut [T]>>;
 
-fn cut<T>(array: Option<&mut [T]>, length: usize) -> Vec<Piece<'_, T>> {
+pub(crate) fn cut<T>(array: Option<&mut [T]>, length: usize) -> Vec<Piece<'_, T>> {
     array.map_or(vec![], |array| {
         array.chunks_mut(length.max(1)).map(|piece| Mutex::new(Some(piece))).collect()
     })
 }
 
-fn take<'a, T>(pieces: &[Piece<'a, T>], index: usize) -> Option<&'a mut [T]> {
+pub(crate) fn take<'a, T>(pieces: &[Piece<'a, T>], index: usize) -> Option<&'a mut [T]> {
     pieces.get(index)?.lock().ok()?.take()
 }
 
-fn check_poses<T: Real>(job: &ForwardKinematics<'_, T>) -> Result<(), JobError> {
+pub(crate) fn check_poses<T: Real>(job: &ForwardKinematics<'_, T>) -> Result<(), JobError> {
     let slot_count = job.topology.slot_count();
     match job.pose {
         Pose::Quaternions { rotations, translations, .. } => {

@@ -8,39 +8,39 @@ use crate::skeleton::{NONE, Topology};
 
 /// A slot and the bones it turns; indices into the plan's own, shorter lists unless said otherwise.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Turn {
+pub(crate) struct Turn {
     /// The slot in the topology; `None`: no rotation (for bones that hang straight in the world).
-    pub(super) slot: Option<usize>,
+    pub(crate) slot: Option<usize>,
     /// The turn above.
-    pub(super) above: Option<usize>,
+    pub(crate) above: Option<usize>,
     /// The bones it turns, in [`Plan::bones`].
-    pub(super) bones: std::ops::Range<usize>,
+    pub(crate) bones: std::ops::Range<usize>,
 }
 
 /// A joint, and the bone that ends in it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Bone<T> {
+pub(crate) struct Bone<T> {
     /// The bone that ends in the parent; `None`: a root, whose vector is its place.
-    pub(super) parent: Option<usize>,
+    pub(crate) parent: Option<usize>,
     /// The bone's vector where it is the same in all frames; what missing columns and added positions start from.
-    pub(super) offset: [T; 3],
+    pub(crate) offset: [T; 3],
     /// Its place among the translated joints.
-    pub(super) translated: Option<usize>,
+    pub(crate) translated: Option<usize>,
 }
 
 /// Turns and bones, each after those it hangs on.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Plan<T> {
-    pub(super) turns: Vec<Turn>,
-    pub(super) bones: Vec<Bone<T>>,
+pub(crate) struct Plan<T> {
+    pub(crate) turns: Vec<Turn>,
+    pub(crate) bones: Vec<Bone<T>>,
     /// For each position asked for: its bone.
-    pub(super) joints_out: Vec<usize>,
+    pub(crate) joints_out: Vec<usize>,
     /// For each rotation asked for: its turn; `None`: the identity.
-    pub(super) slots_out: Vec<Option<usize>>,
+    pub(crate) slots_out: Vec<Option<usize>>,
 }
 
 impl<T: Real> Plan<T> {
-    pub(super) fn new(
+    pub(crate) fn new(
         job: &ForwardKinematics<'_, T>,
         has_positions: bool,
         has_rotations: bool,

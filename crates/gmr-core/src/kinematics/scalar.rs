@@ -32,7 +32,7 @@ pub(super) fn run<T: Real>(
 }
 
 /// The world rotation of every turn and the position of every bone's end in one frame.
-fn solve<T: Real>(
+pub(crate) fn solve<T: Real>(
     job: &ForwardKinematics<'_, T>,
     plan: &Plan<T>,
     frame: usize,
@@ -57,7 +57,7 @@ fn solve<T: Real>(
     }
 }
 
-fn local_rotation<T: Real>(job: &ForwardKinematics<'_, T>, frame: usize, slot: usize) -> [T; 4] {
+pub(crate) fn local_rotation<T: Real>(job: &ForwardKinematics<'_, T>, frame: usize, slot: usize) -> [T; 4] {
     match job.pose {
         Pose::Quaternions { rotations, normalize: asked, .. } => {
             let q = rotations.as_chunks::<4>().0[frame * job.topology.slot_count() + slot];
@@ -70,7 +70,7 @@ fn local_rotation<T: Real>(job: &ForwardKinematics<'_, T>, frame: usize, slot: u
 }
 
 /// The vector of a bone before its slot turns it, or a root's place.
-fn vector<T: Real>(job: &ForwardKinematics<'_, T>, frame: usize, bone: &Bone<T>) -> [T; 3] {
+pub(crate) fn vector<T: Real>(job: &ForwardKinematics<'_, T>, frame: usize, bone: &Bone<T>) -> [T; 3] {
     let Some(place) = bone.translated else { return bone.offset };
     match job.pose {
         Pose::Quaternions { translations, .. } => {

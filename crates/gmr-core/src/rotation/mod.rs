@@ -13,6 +13,7 @@ pub(crate) use euler::check_indices;
 pub use euler::{Axes, EulerColumns, euler_to_quaternions, quaternions_to_euler};
 pub(crate) use euler_block::EulerBlock;
 pub use quaternion::{
-    IDENTITY_F32, IDENTITY_F64, conjugate, dot, exp, log, multiply, multiply_axis, normalize, rotate,
+    IDENTITY_F32, IDENTITY_F64, conjugate, dot, exp, log, multiply, multiply_axis, multiply_inverse,
+    normalize, rotate, rotate_inverse,
 };
 pub use slerp::{slerp, slerp_frames};

@@ -41,6 +41,28 @@ pub fn rotate<L: Lanes>([x, y, z, w]: [L; 4], v: [L; 3]) -> [L; 3] {
     [v[0] + w * t[0] + turned[0], v[1] + w * t[1] + turned[1], v[2] + w * t[2] + turned[2]]
 }
 
+/// The rotation `b` as seen from the frame `a`: `a^-1 b`, of unit quaternions.
+#[inline(always)]
+#[must_use]
+pub fn multiply_inverse<L: Lanes>([ax, ay, az, aw]: [L; 4], [bx, by, bz, bw]: [L; 4]) -> [L; 4] {
+    [
+        aw * bx - ax * bw - (ay * bz - az * by),
+        aw * by - ay * bw - (az * bx - ax * bz),
+        aw * bz - az * bw - (ax * by - ay * bx),
+        aw * bw + ax * bx + (ay * by + az * bz),
+    ]
+}
+
+/// `v` as seen from the frame `q`, a unit quaternion: [`rotate`] by its inverse.
+#[inline(always)]
+#[must_use]
+pub fn rotate_inverse<L: Lanes>([x, y, z, w]: [L; 4], v: [L; 3]) -> [L; 3] {
+    let half = cross([x, y, z], v);
+    let t = [half[0] + half[0], half[1] + half[1], half[2] + half[2]];
+    let turned = cross([x, y, z], t);
+    [v[0] - w * t[0] + turned[0], v[1] - w * t[1] + turned[1], v[2] - w * t[2] + turned[2]]
+}
+
 /// The inverse of a unit quaternion.
 #[must_use]
 pub fn conjugate<T: Real>([x, y, z, w]: [T; 4]) -> [T; 4] {
@@ -108,6 +130,10 @@ mod tests {
         fn products_and_turned_vectors_are_glams(a in unit(), b in unit(), v in vector()) {
             prop_assert!(DQuat::from_array(multiply(a.to_array(), b.to_array())).abs_diff_eq(a * b, 1e-14));
             prop_assert!(DVec3::from(rotate(a.to_array(), v.to_array())).abs_diff_eq(a * v, 1e-13));
+            let seen = DQuat::from_array(multiply_inverse(a.to_array(), b.to_array()));
+            prop_assert!(seen.abs_diff_eq(a.inverse() * b, 1e-14));
+            let back = DVec3::from(rotate_inverse(a.to_array(), v.to_array()));
+            prop_assert!(back.abs_diff_eq(a.inverse() * v, 1e-13));
         }
 
         #[test]

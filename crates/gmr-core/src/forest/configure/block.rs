@@ -1,0 +1,86 @@
+//! As many frames at once as a register holds; the same numbers as [`super::scalar`].
+
+use std::ops::Range;
+
+use super::plan::{Plan, Turn, Vector};
+use crate::kinematics::block::{columns, solve, write};
+use crate::kinematics::source::{Quaternions, Rows, Source};
+use crate::kinematics::{ForwardKinematics, Pose, World};
+use crate::lanes::rows::{TargetRows, blocks};
+use crate::lanes::{Kernel, Lanes, Real};
+use crate::rotation::{multiply_inverse, rotate_inverse};
+
+/// The frames of a job that one thread works on.
+pub(super) struct Frames<'a, 'b, T> {
+    pub(super) job: &'a ForwardKinematics<'b, T>,
+    pub(super) plan: &'a Plan<T>,
+    pub(super) frames: Range<usize>,
+    /// Room for these frames only: the translations are the positions.
+    pub(super) out: World<'a, T>,
+    /// Whether the answer for all frames outgrows the caches.
+    pub(super) is_large: bool,
+}
+
+impl<T: Real> Kernel<T> for Frames<'_, '_, T> {
+    #[inline(always)]
+    fn run<L: Lanes<Real = T>>(self) {
+        let solving = &self.plan.solving;
+        match self.job.pose {
+            Pose::Quaternions { .. } => each_block(Quaternions::<L>::new(self.job, solving), self),
+            Pose::Rows { .. } => {
+                each_block(Rows::<L>::new(self.job, solving, &self.plan.copied), self);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Real>) {
+    let Frames { plan, frames: range, out, is_large, .. } = work;
+    let zero = L::splat(L::Real::ZERO);
+    let identity = [zero, zero, zero, L::splat(L::Real::ONE)];
+    let mut rotations = vec![identity; plan.solving.turns.len()];
+    let mut positions = vec![[zero; 3]; plan.solving.bones.len()];
+    let mut turned = vec![identity; plan.turns.len()];
+    let mut moved = vec![[zero; 3]; plan.vectors.len()];
+    let (turned_columns, moved_columns) = (columns(0..turned.len(), 4), columns(0..moved.len(), 3));
+    let mut rotations_out = TargetRows::new(out.rotations.unwrap_or(&mut []), turned_columns.len(), is_large);
+    let mut translations_out =
+        TargetRows::new(out.positions.unwrap_or(&mut []), moved_columns.len(), is_large);
+    for block in blocks::<L>(range.len()) {
+        source.load(range.start + block.start..range.start + block.end);
+        solve(&plan.solving, &source, &mut rotations, &mut positions);
+        for (q, turn) in turned.iter_mut().zip(&plan.turns) {
+            *q = match *turn {
+                Turn::Copy(slot) => source.rotation(slot),
+                Turn::World(own) => rotations[own],
+                Turn::Between(above, own) => multiply_inverse(rotations[above], rotations[own]),
+                Turn::Back(above) => multiply_inverse(rotations[above], identity),
+            };
+        }
+        for (v, vector) in moved.iter_mut().zip(&plan.vectors) {
+            *v = match *vector {
+                Vector::Copy { bone, is_flipped } => {
+                    let bone = &plan.solving.bones[bone];
+                    let vector = source.vector(bone);
+                    if is_flipped { subtract([zero; 3], vector) } else { vector }
+                }
+                Vector::Place(bone) => positions[bone],
+                Vector::Between { turn, from, to } => {
+                    let way = subtract(positions[to], positions[from]);
+                    match turn {
+                        Some(turn) => rotate_inverse(rotations[turn], way),
+                        None => way,
+                    }
+                }
+            };
+        }
+        write(&turned_columns, turned.as_flattened(), &mut rotations_out, &block);
+        write(&moved_columns, moved.as_flattened(), &mut translations_out, &block);
+    }
+}
+
+#[inline(always)]
+fn subtract<L: Lanes>(a: [L; 3], b: [L; 3]) -> [L; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}

@@ -1,0 +1,152 @@
+//! Where a block of frames takes its local rotations and its bones' vectors from: quaternions, or rows of a file.
+
+use std::ops::Range;
+
+use super::block::splat;
+use super::plan::{Bone, Plan};
+use super::{ForwardKinematics, Pose};
+use crate::lanes::rows::{SourceRows, groups};
+use crate::lanes::{Lanes, Real};
+use crate::rotation::{EulerBlock, normalize};
+
+/// Where a block's local rotations and its bones' vectors come from.
+pub(crate) trait Source<L: Lanes> {
+    /// Takes in a block.
+    fn load(&mut self, frames: Range<usize>);
+    /// Asks the memory for a share of the next block.
+    fn prefetch(&self, part: usize, parts: usize);
+    /// A slot's local rotation.
+    fn rotation(&self, slot: usize) -> [L; 4];
+    /// The vector of the bone whose joint is the `place`th translated one.
+    fn translation(&self, place: usize, bone: &Bone<L::Real>) -> [L; 3];
+
+    /// The vector of a bone before its slot turns it, or a root's place.
+    #[inline(always)]
+    fn vector(&self, bone: &Bone<L::Real>) -> [L; 3] {
+        match bone.translated {
+            None => splat(bone.offset),
+            Some(place) => self.translation(place, bone),
+        }
+    }
+}
+
+/// Poses given as quaternions.
+pub(crate) struct Quaternions<'a, L: Lanes> {
+    rotations: SourceRows<'a, L::Real>,
+    normalize: bool,
+    translations: SourceRows<'a, L::Real>,
+    /// Columns of the translations, in groups of four that the job needs.
+    groups: Vec<usize>,
+    columns: Vec<L>,
+}
+
+impl<'a, L: Lanes> Quaternions<'a, L> {
+    /// For the bones of `plan`.
+    pub(crate) fn new(job: &ForwardKinematics<'a, L::Real>, plan: &Plan<L::Real>) -> Self {
+        let Pose::Quaternions { rotations, normalize, translations } = job.pose else {
+            unreachable!("made for quaternions only")
+        };
+        let width = 3 * job.translated.len();
+        let mut is_wanted = vec![false; width];
+        for place in plan.bones.iter().filter_map(|bone| bone.translated) {
+            is_wanted[3 * place..][..3].fill(true);
+        }
+        Self {
+            rotations: SourceRows::new(rotations, 4 * job.topology.slot_count()),
+            normalize,
+            translations: SourceRows::new(translations, width),
+            groups: groups(&is_wanted),
+            columns: vec![L::splat(L::Real::ZERO); width.max(4)],
+        }
+    }
+}
+
+impl<L: Lanes> Source<L> for Quaternions<'_, L> {
+    #[inline(always)]
+    fn load(&mut self, frames: Range<usize>) {
+        self.rotations.block(&frames, L::WIDTH);
+        let (block, stride) = self.translations.block(&frames, L::WIDTH);
+        for &group in &self.groups {
+            let four = L::load_columns(&block[group..], stride);
+            self.columns[group..group + 4].copy_from_slice(&four);
+        }
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, part: usize, parts: usize) {
+        self.rotations.prefetch_next(L::WIDTH, part, parts);
+    }
+
+    #[inline(always)]
+    fn rotation(&self, slot: usize) -> [L; 4] {
+        let (block, stride) = self.rotations.current();
+        let q = L::load_columns(&block[4 * slot..], stride);
+        if self.normalize { normalize(q) } else { q }
+    }
+
+    #[inline(always)]
+    fn translation(&self, place: usize, _bone: &Bone<L::Real>) -> [L; 3] {
+        let columns = &self.columns[3 * place..][..3];
+        [columns[0], columns[1], columns[2]]
+    }
+}
+
+/// Poses given as rows of degrees and positions.
+pub(crate) struct Rows<'a, L: Lanes> {
+    rows: SourceRows<'a, f64>,
+    euler: EulerBlock<L>,
+    translation_columns: &'a [[i32; 3]],
+    adds_offset: bool,
+}
+
+impl<'a, L: Lanes> Rows<'a, L> {
+    /// For the turns and bones of `plan`, and for these slots besides.
+    pub(crate) fn new(
+        job: &ForwardKinematics<'a, L::Real>,
+        plan: &Plan<L::Real>,
+        other_slots: &[usize],
+    ) -> Self {
+        let Pose::Rows { rows, column_count, angles, translation_columns, adds_offset } = job.pose else {
+            unreachable!("made for rows only")
+        };
+        let slots = plan.turns.iter().filter_map(|turn| turn.slot).chain(other_slots.iter().copied());
+        let places = plan.bones.iter().filter_map(|bone| bone.translated);
+        let plain = places.flat_map(|place| translation_columns[place]);
+        let plain: Vec<usize> = plain.filter_map(|column| usize::try_from(column).ok()).collect();
+        Self {
+            rows: SourceRows::new(rows, column_count),
+            euler: EulerBlock::new(angles, slots, &plain, column_count),
+            translation_columns,
+            adds_offset,
+        }
+    }
+}
+
+impl<L: Lanes> Source<L> for Rows<'_, L> {
+    #[inline(always)]
+    fn load(&mut self, frames: Range<usize>) {
+        self.euler.load(&mut self.rows, frames);
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, part: usize, parts: usize) {
+        self.rows.prefetch_next(L::WIDTH, part, parts);
+    }
+
+    #[inline(always)]
+    fn rotation(&self, slot: usize) -> [L; 4] {
+        self.euler.quaternion(slot)
+    }
+
+    #[inline(always)]
+    fn translation(&self, place: usize, bone: &Bone<L::Real>) -> [L; 3] {
+        let mut vector: [L; 3] = splat(bone.offset);
+        for (axis, &column) in self.translation_columns[place].iter().enumerate() {
+            if let Ok(column) = usize::try_from(column) {
+                let channel = self.euler.channel(column);
+                vector[axis] = if self.adds_offset { vector[axis] + channel } else { channel };
+            }
+        }
+        vector
+    }
+}
