@@ -146,15 +146,14 @@ def test_slots_in_another_order_are_renumbered_for_a_file(motion: Motion) -> Non
     close(places(again), places(motion))
 
 
-def test_siblings_that_turn_on_their_own_cannot_be_rows() -> None:
+def test_siblings_that_turn_on_their_own_are_rows_through_a_dummy_joint() -> None:
     skeleton = Skeleton(
         ("Hips", "Left", "Right"), np.array([-1, 0, 0], np.int32), np.ones((3, 3)),
-        np.array([-1, 0, 1], np.int32), 2, np.full(3, -1, np.int32), np.zeros(3, np.uint8),
+        np.array([-1, 0, 1], np.int32), 2, np.zeros(3, np.uint8),
     )  # fmt: skip
     still = np.tile([0.0, 0.0, 0.0, 1.0], (1, 2, 1))
     motion = Motion.from_pose(skeleton, still, np.zeros((1, 1, 3)), 0.1)
-    with pytest.raises(SkeletonError, match="turn independently"):
-        motion.to_post_rotation()
+    assert motion.to_post_rotation().skeleton.names == ("Hips", "Left", "Right", "Hips_to_Right")
     with pytest.raises(SkeletonError, match="independently of their siblings"):
         motion.rows  # noqa: B018
 

@@ -69,7 +69,7 @@ def test_what_is_no_forest_is_refused(parents: list[int], said: str) -> None:
     with pytest.raises(SkeletonError, match=said):
         Skeleton(
             ("a", "b", "c"), np.array(parents, np.int32), np.zeros((3, 3)), np.full(3, -1, np.int32), 0,
-            np.full(3, -1, np.int32), np.zeros(3, np.uint8),
+            np.zeros(3, np.uint8),
         )  # fmt: skip
 
 
@@ -77,7 +77,7 @@ def test_arrays_of_another_length_are_refused() -> None:
     with pytest.raises(SkeletonError, match=r"offsets has the shape \(2, 3\) where \(1, 3\) is needed"):
         Skeleton(
             ("a",), np.array([-1], np.int32), np.zeros((2, 3)), np.array([-1], np.int32), 0,
-            np.array([-1], np.int32), np.zeros(1, np.uint8),
+            np.zeros(1, np.uint8),
         )  # fmt: skip
 
 
@@ -103,7 +103,7 @@ def test_channels_that_cannot_be_composed_are_refused(channels: tuple[str, ...],
 def test_a_joint_without_one_frame_says_whose_bones_differ() -> None:
     skeleton = Skeleton(
         ("Hips", "Left", "Right"), np.array([-1, 0, 0], np.int32), np.ones((3, 3)),
-        np.array([-1, 0, 1], np.int32), 2, np.full(3, -1, np.int32), np.zeros(3, np.uint8),
+        np.array([-1, 0, 1], np.int32), 2, np.zeros(3, np.uint8),
     )  # fmt: skip
     with pytest.raises(SkeletonError, match="'Left' and 'Right' turn independently"):
         skeleton.frame_slots  # noqa: B018

@@ -330,6 +330,92 @@ def forward_kinematics_euler(
         adds_offset: whether these columns are added to the offset (else they replace it).
     """
 
+# --- forest ---
+
+class Forest:
+    """A skeleton in one of its configurations: which of its bones are cut, and each tree's root.
+
+    Args:
+        home: the skeleton before any root was moved.
+        parents: (J,) in this configuration; as at home where left out.
+
+    Raises:
+        ValueError: a joint hangs on one that it has no bone with, or the parents form no trees.
+    """
+
+    def __init__(self, home: Topology, parents: NDArray[np.int32] | None = None) -> None: ...
+    def shift_root(self, joint: int, names: Sequence[str]) -> Forest:
+        """The forest in which ``joint`` is the root of its tree; ``names`` are for errors (ValueError)."""
+
+    def split(self, joint: int, names: Sequence[str]) -> Forest:
+        """The forest in which ``joint`` is a root too."""
+
+    def join(self, root: int, names: Sequence[str]) -> Forest:
+        """The forest in which the tree of ``root`` hangs on the joint that its soft link names."""
+
+    def with_roots(self, roots: list[int], names: Sequence[str]) -> Forest:
+        """The forest with just these roots."""
+
+    def root_of(self, joint: int) -> int:
+        """The root of a joint's tree."""
+
+    def top_of(self, joint: int) -> int:
+        """The joint of a joint's tree that is nearest to home."""
+
+    @property
+    def topology(self) -> Topology: ...
+    @property
+    def bones(self) -> NDArray[np.int32]:
+        """(J,) the joint in which the bone that each joint's slot turns ends at home."""
+
+    @property
+    def links(self) -> NDArray[np.int32]:
+        """(J,) for a joint that is cut off from its parent at home: that parent; -1 elsewhere."""
+
+def configure(
+    before: Forest,
+    after: Forest,
+    offsets: NDArray[np.float64],
+    translated: NDArray[np.int32],
+    rotations: NDArray[np.float64],
+    translations: NDArray[np.float64],
+    threads: int = 1,
+    /,
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64]]:
+    """A motion in another configuration of its skeleton.
+
+    Args:
+        before: the configuration that the frames are in.
+        after: the one wanted; of the same skeleton at home.
+        offsets: (J, 3) in ``before``.
+        translated: (T,) in ``before``.
+        rotations: (F, S, 4).
+        translations: (F, T, 3).
+        threads: 0 means all cores; the bits are the same for every number.
+
+    Returns:
+        Rotations (F, S', 4); the joints translated (U,): roots, moving bones, and those that were cut;
+        translations (F, U, 3).
+
+    Raises:
+        ValueError: shapes do not fit, or the two are of different skeletons.
+    """
+
+def configure_euler(
+    before: Forest,
+    after: Forest,
+    offsets: NDArray[np.float64],
+    translated: NDArray[np.int32],
+    rows: NDArray[np.float64],
+    rotation_columns: NDArray[np.int32],
+    rotation_axes: NDArray[np.uint8],
+    translation_columns: NDArray[np.int32],
+    adds_offset: bool,
+    threads: int = 1,
+    /,
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64]]:
+    """As :func:`configure`, from rows (F, C) as :func:`forward_kinematics_euler` takes them."""
+
 # --- trial ---
 
 def run_trials(

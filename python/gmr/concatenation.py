@@ -120,7 +120,7 @@ def _difference(first: Motion, other: Motion) -> str:
         for what, test in differs:
             if test(joint):
                 return f"the {what} of joint {joint} ('{name}', '{two.names[joint]}') differs"
-    return "what their end sites or soft links are differs"
+    return "their end sites, or what their roots were before they were moved, differ"
 
 
 def _named(motion: Motion) -> str:

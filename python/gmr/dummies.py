@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from gmr.arrays import read_only
 from gmr.channels import ChannelLayout
 from gmr.euler import translations_of_rows
+from gmr.forest import changed_at_home
 from gmr.frames import Pose, Rows
 from gmr.quaternions import conjugate, multiply
 from gmr.skeleton import End, Skeleton
@@ -69,8 +70,12 @@ class Dropped:
 
 
 def find_dummies(motion: Motion) -> tuple[int, ...]:
-    """Indices of the dummy joints: neither root nor end, with children, of zero length in every frame."""
+    """Indices of the dummy joints: neither root nor end, with children, of zero length in every frame.
+
+    In any configuration it is the bone above the joint at home that counts; one that is cut has no length.
+    """
     skeleton = motion.skeleton
+    at_home = skeleton if skeleton.home is None else skeleton.home
     lengths = np.abs(skeleton.offsets).max(axis=1)
     moving = [joint for joint in motion.translated.tolist() if skeleton.parents[joint] >= 0]
     if moving and motion.frame_count:
@@ -79,13 +84,11 @@ def find_dummies(motion: Motion) -> tuple[int, ...]:
             translations_of_rows(skeleton, source) if isinstance(source, Rows) else source.translations
         )
         lengths[motion.translated] = np.abs(translations).max(axis=(0, 2))
+    zero = skeleton.forest.bones[(lengths == 0) & (skeleton.parents >= 0)]
     return tuple(
         joint
-        for joint, children in enumerate(skeleton.children)
-        if children
-        and lengths[joint] == 0
-        and skeleton.ends[joint] == End.JOINT
-        and skeleton.parents[joint] >= 0
+        for joint in sorted(zero.tolist())
+        if at_home.children[joint] and skeleton.ends[joint] == End.JOINT and skeleton.parents[joint] >= 0
     )
 
 
@@ -99,6 +102,15 @@ def drop_dummies(motion: Motion) -> Motion:
     dummies = find_dummies(motion)
     if not dummies:
         return motion
+    if motion.skeleton.home is not None:
+        kept = np.setdiff1d(np.arange(motion.skeleton.joint_count), dummies)
+        places = _renumbering(motion.skeleton.joint_count, kept)
+        return changed_at_home(motion, lambda motion: _without(motion, dummies), places)
+    return _without(motion, dummies)
+
+
+def _without(motion: Motion, dummies: tuple[int, ...]) -> Motion:
+    """The motion, at home, without these dummies."""
     gone = set(dummies)
     skeleton, pose = motion.skeleton, motion.pose
     rotations = pose.rotations.copy()
@@ -142,6 +154,9 @@ def restore_dummies(motion: Motion) -> Motion:
     record = motion.dropped
     if record is None:
         return motion
+    if motion.skeleton.home is not None:
+        places = np.setdiff1d(np.arange(record.skeleton.joint_count), record.dummies)
+        return changed_at_home(motion, restore_dummies, places)
     if record.rows is not None:
         return replace(motion, skeleton=record.skeleton, source=record.rows, dropped=record.before)
     skeleton, pose = record.skeleton, motion.pose
@@ -153,9 +168,13 @@ def restore_dummies(motion: Motion) -> Motion:
             if above >= 0:
                 rotations[:, slot] = multiply(conjugate(rotations[:, above]), rotations[:, slot])
     kept = np.setdiff1d(np.arange(skeleton.joint_count), record.dummies)
-    translations = np.zeros((motion.frame_count, len(record.translated), 3))
-    places = {joint: k for k, joint in enumerate(record.translated)}
-    held = [places[joint] for joint in kept[pose.translated].tolist()]
+    # A joint that is at rest need not be among those that are translated now; a dummy has no length at all.
+    rest = np.where(
+        np.isin(record.translated, record.dummies)[:, None], 0.0, skeleton.offsets[list(record.translated)]
+    )
+    translations = np.tile(rest, (motion.frame_count, 1, 1))
+    columns = {joint: k for k, joint in enumerate(record.translated)}
+    held = [columns[joint] for joint in kept[pose.translated].tolist()]
     translations[:, held] = pose.translations
     source = Pose(
         read_only(rotations), np.array(record.translated, np.int32), read_only(translations), record.layout
@@ -177,11 +196,6 @@ def _subset(
     slots: NDArray[np.int32],
 ) -> Skeleton:
     """The kept joints, hanging and turning as ``parents`` and ``slots`` (in old numbers) say."""
-    staying = set(kept.tolist())
-    links = skeleton.links.copy()
-    for root in np.flatnonzero(links >= 0).tolist():
-        while links[root] >= 0 and links[root] not in staying:
-            links[root] = skeleton.parents[links[root]]
     renumbered = _renumbering(skeleton.joint_count, kept)
     return Skeleton(
         names=tuple(skeleton.names[joint] for joint in kept),
@@ -189,6 +203,5 @@ def _subset(
         offsets=skeleton.offsets[kept],
         slots=slots[kept],
         slot_count=skeleton.slot_count,
-        links=renumbered[links[kept]],
         ends=skeleton.ends[kept],
     )

@@ -39,8 +39,8 @@ def rows_from_pose(skeleton: Skeleton, pose: Pose) -> Rows:
     layout = pose.layout or ChannelLayout.standard(skeleton, pose.translated)
     if not layout.fits(skeleton):
         raise SkeletonError(
-            "this motion's bones turn independently of their siblings, which rows of channels cannot say. "
-            "Where dummy joints were dropped, restore_dummies() brings them back."
+            "this motion's bones turn independently of their siblings, or its roots were moved, which rows "
+            "of channels cannot say. to_post_rotation() joins the roots and brings in dummy joints."
         )
     values = np.zeros((len(pose), layout.column_count))
     _write_angles(values, layout, skeleton, pose.rotations)

@@ -58,13 +58,15 @@ class Pose:
         translated: (T,) int32, the joints with a translation per frame; all roots are among them.
         translations: (F, T, 3) float64 file units: a root's place in the world, another joint's vector from
             its parent in the frame of its own bone.
-        layout: the channels that a post-rotation file would write it with; None: the standard ones.
+        layout: the channels that a post-rotation file would write it with, at home; None: the standard ones.
+        rows: the rows that these frames were read as, at home, where they are the same motion still.
     """
 
     rotations: NDArray[np.float64]
     translated: NDArray[np.int32]
     translations: NDArray[np.float64]
     layout: ChannelLayout | None = None
+    rows: Rows | None = None
 
     def __post_init__(self) -> None:
         translated = frozen(self.translated, np.int32)
@@ -95,10 +97,11 @@ class Pose:
     def frames(self, part: slice) -> Pose:
         """Some of the frames; consecutive ones share memory."""
         rotations, translations = (np.ascontiguousarray(a[part]) for a in (self.rotations, self.translations))
-        return replace(self, rotations=read_only(rotations), translations=read_only(translations))
+        rows = None if self.rows is None else self.rows.frames(part)
+        return replace(self, rotations=read_only(rotations), translations=read_only(translations), rows=rows)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _owned, (Pose, self.rotations, self.translated, self.translations, self.layout)
+        return _owned, (Pose, self.rotations, self.translated, self.translations, self.layout, self.rows)
 
 
 def check_fit(skeleton: Skeleton, source: Rows | Pose) -> None:

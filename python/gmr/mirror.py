@@ -14,6 +14,7 @@ from gmr.arrays import read_only
 from gmr.channels import ChannelLayout
 from gmr.dummies import Dropped
 from gmr.errors import SkeletonError
+from gmr.forest import changed_at_home
 from gmr.frames import Pose, Rows
 from gmr.sides import pair_joints
 from gmr.skeleton import Skeleton
@@ -35,7 +36,7 @@ def mirror(motion: Motion, pairs: Mapping[str, str] | Iterable[tuple[str, str]] 
     The offsets are mirrored too: a skeleton that leans to its left comes out leaning to its right.
 
     Args:
-        motion: any.
+        motion: any; in another configuration than at home, the roots are exchanged too.
         pairs: names of joints of the two sides, where their names do not tell (Left/Right, L/R, _l/_r,
             lfoot/rfoot).
 
@@ -43,6 +44,9 @@ def mirror(motion: Motion, pairs: Mapping[str, str] | Iterable[tuple[str, str]] 
         SkeletonError: a joint of one side has no partner on the other.
     """
     stated = None if pairs is None else tuple(pairs.items() if isinstance(pairs, Mapping) else pairs)
+    if motion.skeleton.home is not None:
+        pair = pair_joints(motion.skeleton.home, stated)
+        return changed_at_home(motion, lambda motion: mirror(motion, stated), pair)
     if isinstance(motion.source, Rows):
         return _mirrored_rows(motion, motion.source, stated)
     return _mirrored_pose(motion, motion.source, stated)
@@ -152,13 +156,7 @@ def _paired_slots(
 
 def _mirrored_skeleton(skeleton: Skeleton, pair: NDArray[np.int32]) -> Skeleton:
     """Offsets and end sites of the two sides exchanged; names, parents and slots stay."""
-    linked = skeleton.links[pair]
-    return replace(
-        skeleton,
-        offsets=skeleton.offsets[pair] * _POINT,
-        ends=skeleton.ends[pair],
-        links=np.where(linked >= 0, pair[linked], -1),
-    )
+    return replace(skeleton, offsets=skeleton.offsets[pair] * _POINT, ends=skeleton.ends[pair])
 
 
 def _mirrored_layout(layout: ChannelLayout, pair: NDArray[np.int32]) -> ChannelLayout:

@@ -210,10 +210,13 @@ class Motion:
         return motion_positions(self, dtype, joints, out, threads)
 
     def bone_rotations(self, *, dtype: DTypeLike | None = None, threads: int | None = None) -> FloatArray:
-        """(F, J, 4) xyzw: world rotation of the bone that ends in each joint; identity for a root."""
+        """(F, J, 4) xyzw: world rotation of the bone that ends in each joint at home (a root: its own).
+
+        Every operation on the forest keeps it, wherever it makes the roots.
+        """
         from gmr.world import motion_rotations
 
-        return motion_rotations(self, self.skeleton.topology.world_slots, dtype, threads)
+        return motion_rotations(self, self.skeleton.bone_slots, dtype, threads)
 
     def joint_rotations(self, *, dtype: DTypeLike | None = None, threads: int | None = None) -> FloatArray:
         """(F, J, 4) xyzw: world frame of each joint as BVH means it (post-rotation).
@@ -236,6 +239,37 @@ class Motion:
         if isinstance(self.source, Rows) and "pose" in self.__dict__:
             cut.__dict__["pose"] = self.pose.frames(part)
         return cut
+
+    def with_roots(self, roots: Iterable[Joint]) -> Motion:
+        """The same motion with just these roots; see :func:`gmr.forest.with_roots`."""
+        from gmr.forest import with_roots
+
+        return with_roots(self, roots)
+
+    def shift_root(self, joint: Joint, root: Joint | None = None) -> Motion:
+        """The same motion with ``joint`` as the root of its tree; see :func:`gmr.forest.shift_root`."""
+        from gmr.forest import shift_root
+
+        return shift_root(self, joint, root)
+
+    def split(self, joint: Joint) -> Motion:
+        """The same motion with ``joint`` as a further root; see :func:`gmr.forest.split`."""
+        from gmr.forest import split
+
+        return split(self, joint)
+
+    def join(self, root: Joint) -> Motion:
+        """The same motion without this root, its tree hanging on its old parent; see
+        :func:`gmr.forest.join`."""
+        from gmr.forest import join
+
+        return join(self, root)
+
+    def select(self, joints: Iterable[Joint]) -> Motion:
+        """The motion of some of the joints alone; see :func:`gmr.partial.select`."""
+        from gmr.partial import select
+
+        return select(self, joints)
 
     def resample(self, fps: float) -> Motion:
         """The motion at another rate; see :func:`gmr.resample.resample`."""

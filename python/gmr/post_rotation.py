@@ -1,7 +1,8 @@
 """The post-rotation form, which BVH, AMC and glTF need: the children of a joint share its rotation.
 
 A motion whose siblings turn independently gets back as many of its dropped dummies as that takes, and no
-more.
+more; where it never had any, a dummy joint of zero length comes between a joint and those of its children
+that turn otherwise than the first. Roots that were split off are joined first.
 Source: the General Motion Representation, its way out to a post-rotation format.
 """
 
@@ -17,9 +18,10 @@ from numpy.typing import NDArray
 from gmr.arrays import read_only
 from gmr.channels import ChannelLayout, turning_freely
 from gmr.dummies import restore_dummies
+from gmr.forest import carried, configuration
 from gmr.frames import Pose, Rows
-from gmr.quaternions import multiply
-from gmr.skeleton import Skeleton
+from gmr.quaternions import conjugate, multiply
+from gmr.skeleton import End, Skeleton
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
@@ -34,15 +36,15 @@ _STILL: Final = 1e-12
 def to_post_rotation(motion: Motion) -> Motion:
     """The motion as rows of channels can say it; every joint keeps its place.
 
-    A dropped dummy stays away where its rotation can go elsewhere: it was its parent's only child, or never
-    turned. The others come back.
+    Roots that were split off are joined; a tree that was turned over stays so, with the root that it has. A
+    dropped dummy stays away where its rotation can go elsewhere: it was its parent's only child, or never
+    turned. The others come back. Where siblings still turn independently, new dummies named
+    "<parent>_to_<child>" are brought in.
 
     Returns:
-        A motion with a layout that fits its skeleton; the same motion where it has one already.
-
-    Raises:
-        SkeletonError: siblings turn independently for another reason than dropped dummies.
+        A motion at home with a layout that fits its skeleton; the same motion where it has one already.
     """
+    motion = _at_home(motion)
     if motion.dropped is not None:
         return _needed_only(to_post_rotation(restore_dummies(motion)), motion.dropped.dummies)
     if isinstance(motion.source, Rows):
@@ -51,24 +53,96 @@ def to_post_rotation(motion: Motion) -> Motion:
     layout = pose.layout or ChannelLayout.standard(skeleton, pose.translated)
     if layout.fits(skeleton):
         return motion if pose.layout else replace(motion, source=replace(pose, layout=layout))
-    return _renumbered(motion, pose, ChannelLayout.standard(skeleton, pose.translated))
+    return _in_shared_slots(motion, pose)
 
 
-def _renumbered(motion: Motion, pose: Pose, layout: ChannelLayout) -> Motion:
-    """The motion with its slots numbered as ``layout`` does: by the joints that own them, in file order."""
+def _at_home(motion: Motion) -> Motion:
+    """The motion with all roots joined that were split off; a tree turned over begins at its root."""
     skeleton = motion.skeleton
-    if not len(skeleton.frame_slots):
+    if skeleton.home is None:
         return motion
+    roots = [root for root in skeleton.roots if skeleton.links[skeleton.forest.top_of(root)] < 0]
+    motion = carried(motion, configuration(skeleton, (), roots))
+    skeleton = motion.skeleton
+    if skeleton.home is None:
+        return motion
+    # An end site that others hang on now is a joint like any other.
+    is_inner = np.array([bool(children) for children in skeleton.children]) | (skeleton.parents < 0)
+    turned = replace(skeleton, home=None, ends=np.where(is_inner, int(End.JOINT), skeleton.ends))
+    return replace(motion, skeleton=turned, source=replace(motion.pose, layout=None, rows=None), dropped=None)
+
+
+def _in_shared_slots(motion: Motion, pose: Pose) -> Motion:
+    """The motion with siblings sharing one slot, where need be through new dummies, and a layout for it."""
+    skeleton = motion.skeleton
+    names, parents = list(skeleton.names), skeleton.parents.tolist()
+    turns: dict[int, NDArray[np.float64]] = {}
+    for joint, children in enumerate(skeleton.children):
+        groups = _by_slot(skeleton, children)
+        if not groups:
+            continue
+        (shared, _), *others = groups.items()
+        turns[joint] = _rotation(pose, shared)
+        for slot, group in others:
+            dummy = len(names)
+            names.append(_new_name(names, f"{names[joint]}_to_{names[group[0]]}"))
+            parents.append(joint)
+            turns[dummy] = multiply(conjugate(turns[joint]), _rotation(pose, slot))
+            for child in group:
+                parents[child] = dummy
+    for root in skeleton.roots:
+        if root in turns:
+            turns[root] = multiply(_rotation(pose, int(skeleton.slots[root])), turns[root])
+    return _post_rotation_of(motion, pose, names, parents, turns)
+
+
+def _post_rotation_of(
+    motion: Motion,
+    pose: Pose,
+    names: list[str],
+    parents: list[int],
+    turns: dict[int, NDArray[np.float64]],
+) -> Motion:
+    """The motion on these joints, the new ones at their parents, each frame turned as ``turns`` says."""
+    skeleton = motion.skeleton
+    new = len(names) - skeleton.joint_count
+    ends = [*skeleton.ends.tolist(), *[int(End.JOINT)] * new]
+    offsets = np.concatenate([skeleton.offsets, np.zeros((new, 3))])
+    plain = Skeleton.post_rotation(names, parents, offsets, ends=ends)
+    layout = ChannelLayout.standard(plain, pose.translated)
+    turning = np.flatnonzero(np.diff(layout.starts)).tolist()
+    body = Skeleton.post_rotation(names, parents, offsets, ends=ends, turning=turning)
     rotations = np.zeros((len(pose), len(layout.slot_joints), 4))
     rotations[..., 3] = 1
     for slot, joint in enumerate(layout.slot_joints.tolist()):
-        children = skeleton.children[joint]
-        if children and skeleton.slots[children[0]] >= 0:
-            rotations[:, slot] = pose.rotations[:, skeleton.slots[children[0]]]
+        if joint in turns:
+            rotations[:, slot] = turns[joint]
     source = Pose(read_only(rotations), pose.translated, pose.translations, layout)
-    return replace(
-        motion, skeleton=_skeleton_of(skeleton, layout, range(skeleton.joint_count)), source=source
-    )
+    return replace(motion, skeleton=body, source=source)
+
+
+def _by_slot(skeleton: Skeleton, children: Sequence[int]) -> dict[int, list[int]]:
+    """Children by the slot that turns them, in their order."""
+    groups: dict[int, list[int]] = {}
+    for child in children:
+        groups.setdefault(int(skeleton.slots[child]), []).append(child)
+    return groups
+
+
+def _rotation(pose: Pose, slot: int) -> NDArray[np.float64]:
+    """(F, 4) rotation of a slot; -1: none."""
+    if slot < 0:
+        return np.tile([0.0, 0.0, 0.0, 1.0], (len(pose), 1))
+    return pose.rotations[:, slot]
+
+
+def _new_name(names: Sequence[str], wanted: str) -> str:
+    """``wanted``, with a number where a joint has that name."""
+    name, number = wanted, 1
+    while name in names:
+        number += 1
+        name = f"{wanted}_{number}"
+    return name
 
 
 def _needed_only(motion: Motion, dummies: Sequence[int]) -> Motion:

@@ -54,11 +54,12 @@ class Skeleton:
         slots: (J,) int32, the rotation slot that turns the bone ending in each joint; -1: the bone has its
             parent's world rotation.
         slot_count: S, the number of slots; slots that turn no bone are allowed.
-        links: (J,) int32, for a joint that was promoted to a root: the parent it had; -1 elsewhere.
         ends: (J,) uint8 of :class:`End`.
+        home: the skeleton before any of its roots was moved; None: this is it. See :mod:`gmr.forest`.
 
     Raises:
-        SkeletonError: the arrays do not fit each other, or do not make a forest.
+        SkeletonError: the arrays do not fit each other, do not make a forest, or are no configuration of
+            ``home``.
     """
 
     names: tuple[str, ...]
@@ -66,8 +67,8 @@ class Skeleton:
     offsets: NDArray[np.float64]
     slots: NDArray[np.int32]
     slot_count: int
-    links: NDArray[np.int32]
     ends: NDArray[np.uint8]
+    home: Skeleton | None = None
 
     def __post_init__(self) -> None:
         count = len(self.names)
@@ -76,7 +77,6 @@ class Skeleton:
             ("parents", np.int32, (count,)),
             ("offsets", np.float64, (count, 3)),
             ("slots", np.int32, (count,)),
-            ("links", np.int32, (count,)),
             ("ends", np.uint8, (count,)),
         ):
             array = frozen(getattr(self, field), dtype)
@@ -85,7 +85,11 @@ class Skeleton:
                     f"{field} has the shape {array.shape} where {shape} is needed: one entry a joint"
                 )
             object.__setattr__(self, field, array)
-        self.topology  # noqa: B018  what is no forest is refused here, not where it is first used
+        # What is no forest is refused here, not where it is first used.
+        if self.home is None:
+            self.topology  # noqa: B018
+        elif self.names != self.home.names or not np.array_equal(self.forest.topology.slots, self.slots):
+            raise SkeletonError("these are not the slots of a configuration of home; use with_roots()")
 
     @classmethod
     def post_rotation(
@@ -115,7 +119,6 @@ class Skeleton:
             offsets=np.asarray(offsets, np.float64).reshape(len(names), 3),
             slots=np.where(parents >= 0, owned[parents], -1).astype(np.int32) if len(names) else none,
             slot_count=int(owned.max(initial=-1)) + 1,
-            links=none,
             ends=np.zeros(len(names), np.uint8) if ends is None else np.asarray(ends, np.uint8),
         )
 
@@ -131,6 +134,21 @@ class Skeleton:
             return _core.Topology(self.parents, self.slots, self.slot_count)
         except ValueError as error:
             raise SkeletonError(f"{error} (joints: {quoted(self.names, _SHOWN)})") from error
+
+    @cached_property
+    def forest(self) -> _core.Forest:
+        """This configuration, as the core takes it."""
+        home = self if self.home is None else self.home
+        try:
+            return _core.Forest(home.topology, None if self.home is None else self.parents)
+        except ValueError as error:
+            raise SkeletonError(f"{error} (joints: {quoted(self.names, _SHOWN)})") from error
+
+    @property
+    def links(self) -> NDArray[np.int32]:
+        """(J,) int32: the soft links: for a joint that is cut off from its parent at home that parent, else
+        -1."""
+        return self.forest.links
 
     @cached_property
     def roots(self) -> tuple[int, ...]:
@@ -155,23 +173,32 @@ class Skeleton:
         return tuple(order)
 
     @cached_property
+    def bone_slots(self) -> NDArray[np.int32]:
+        """(J,) slot whose world rotation is that of each bone at home, by the joint in which it ends; -1: the
+        world's."""
+        carriers = np.empty(self.joint_count, np.intp)
+        carriers[self.forest.bones] = np.arange(self.joint_count)
+        return frozen(np.asarray(self.topology.world_slots)[carriers], np.int32)
+
+    @cached_property
     def frame_slots(self) -> NDArray[np.int32]:
         """(J,) slot whose world rotation is each joint's frame as BVH means it (post-rotation); -1: the
         world's.
 
-        It is the slot that the joint's children share; a joint without children has the frame of its own
-        bone.
+        It is the slot that the joint's children at home share; a joint without children has the frame of its
+        own bone.
 
         Raises:
             SkeletonError: two children of a joint have different world rotations, so it has no one frame.
         """
-        world = np.asarray(self.topology.world_slots)
-        found = world.astype(np.int32)
-        for joint, children in enumerate(self.children):
+        home = self if self.home is None else self.home
+        world = np.asarray(home.topology.world_slots)
+        found = self.bone_slots.copy()
+        for joint, children in enumerate(home.children):
             if not children:
                 continue
             first, *others = children
-            found[joint] = world[first]
+            found[joint] = self.bone_slots[first]
             for other in others:
                 if world[other] != world[first]:
                     raise SkeletonError(
@@ -233,15 +260,16 @@ class Skeleton:
             and self.slot_count == other.slot_count
             and all(
                 np.array_equal(getattr(self, field), getattr(other, field))
-                for field in ("parents", "slots", "offsets", "links", "ends")
+                for field in ("parents", "slots", "offsets", "ends")
             )
+            and self.home == other.home
         )
 
     def __hash__(self) -> int:
         return hash((self.names, self.parents.tobytes(), self.slots.tobytes()))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        fields = (self.names, self.parents, self.offsets, self.slots, self.slot_count, self.links, self.ends)
+        fields = (self.names, self.parents, self.offsets, self.slots, self.slot_count, self.ends, self.home)
         return Skeleton, fields
 
 

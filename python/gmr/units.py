@@ -72,7 +72,8 @@ def _scaled(motion: Motion, factor: float) -> Motion:
     if isinstance(source, Rows):
         frames: Rows | Pose = _scaled_rows(source, factor)
     else:
-        frames = replace(source, translations=read_only(source.translations * factor))
+        rows = None if source.rows is None else _scaled_rows(source.rows, factor)
+        frames = replace(source, translations=read_only(source.translations * factor), rows=rows)
     dropped = motion.dropped
     if dropped is not None:
         dropped = dropped.on(
@@ -88,4 +89,5 @@ def _scaled_rows(rows: Rows, factor: float) -> Rows:
 
 @lru_cache(maxsize=16)  # the files of a folder mostly share one skeleton
 def _scaled_offsets(skeleton: Skeleton, factor: float) -> Skeleton:
-    return replace(skeleton, offsets=read_only(skeleton.offsets * factor))
+    home = None if skeleton.home is None else _scaled_offsets(skeleton.home, factor)
+    return replace(skeleton, offsets=read_only(skeleton.offsets * factor), home=home)

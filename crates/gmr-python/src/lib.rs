@@ -3,6 +3,7 @@
 
 use pyo3::prelude::*;
 
+mod forest;
 mod index;
 mod isa;
 mod kinematics;
@@ -20,6 +21,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     numbers::register(module)?;
     rotation::register(module)?;
     kinematics::register(module)?;
+    forest::register(module)?;
     index::register(module)?;
     matching::register(module)?;
     trial::register(module)?;

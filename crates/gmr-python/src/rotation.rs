@@ -85,7 +85,7 @@ fn resample<'py, T: Real + Element>(
 }
 
 /// An array made by NumPy itself, whose MemoryError is raised where it does not fit; `PyArray3::zeros` would panic.
-fn zeros<T: Element>(py: Python<'_>, shape: [usize; 3]) -> PyResult<Bound<'_, PyArray3<T>>> {
+pub(crate) fn zeros<T: Element>(py: Python<'_>, shape: [usize; 3]) -> PyResult<Bound<'_, PyArray3<T>>> {
     let array = py.import("numpy")?.call_method1("zeros", (shape.to_vec(), dtype::<T>(py)))?;
     Ok(array.cast_into()?)
 }

@@ -1,0 +1,247 @@
+"""The General Motion Representation: a motion is a forest, and any of its joints can be a root.
+
+A *configuration* says which bones are cut and which joint of each tree is its root; every root carries its
+place in the world in every frame. The operations go from one configuration to another and keep every joint's
+world position and every bone's world rotation. A configuration alone determines the motion, whatever
+operations led to it. The bone above a promoted joint is remembered as a soft link, so that the promotion can
+be undone.
+Source: "General Motion Representation", shift root, split tree, join trees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr import _core
+from gmr.arrays import read_only
+from gmr.errors import SkeletonError
+from gmr.frames import Pose, Rows
+from gmr.skeleton import Skeleton
+
+if TYPE_CHECKING:
+    from gmr.motion import Motion
+
+__all__ = [
+    "arranged",
+    "carried",
+    "changed_at_home",
+    "configuration",
+    "home",
+    "join",
+    "shift_root",
+    "split",
+    "with_roots",
+]
+
+Joint = str | int | np.integer[Any]
+
+_STILL = 1e-11
+"""Share of the motion's reach by which a bone that was cut may miss its offset by rounding alone."""
+
+_THREADING_PAYS = 1_000_000
+"""Joint positions above which sharing the work among threads wins over starting them."""
+
+
+def with_roots(motion: Motion, roots: Iterable[Joint]) -> Motion:
+    """The same motion with just these roots: every other bone is whole.
+
+    Where the joint at which a tree begins at home is not among them, the tree hangs on the first of them, in
+    the order of the joints; the bones above all others are cut.
+
+    Args:
+        motion: any, in any configuration.
+        roots: names or indices, in any order.
+
+    Raises:
+        SkeletonError: a joint does not exist or is named twice, or a tree would have no root.
+    """
+    names = motion.skeleton.names
+    wanted = motion.skeleton.indices(roots).tolist()
+    return _moved(motion, lambda forest: forest.with_roots(wanted, names))
+
+
+def shift_root(motion: Motion, joint: Joint, root: Joint | None = None) -> Motion:
+    """The same motion with ``joint`` as the root of its tree, which is turned over; other trees stay.
+
+    It is its own inverse: shifting back to the old root gives back every number, to rounding.
+
+    Args:
+        motion: any, in any configuration.
+        joint: name or index.
+        root: the root that is to give up its place, as a check; that of the joint's tree by default.
+
+    Raises:
+        SkeletonError: there is no such joint, or it does not hang below ``root``.
+    """
+    names, index = motion.skeleton.names, motion.skeleton.index(joint)
+    old = motion.skeleton.forest.root_of(index)
+    if root is not None and motion.skeleton.index(root) != old:
+        stated = names[motion.skeleton.index(root)]
+        raise SkeletonError(
+            f"'{names[index]}' does not hang below the root '{stated}' but below '{names[old]}'; a root "
+            "moves inside its tree. Join the trees first, or choose all roots at once: with_roots"
+        )
+    return _moved(motion, lambda forest: forest.shift_root(index, names))
+
+
+def split(motion: Motion, joint: Joint) -> Motion:
+    """The same motion with ``joint`` as a further root; the bone above it is cut and remembered.
+
+    Raises:
+        SkeletonError: there is no such joint, or it is a root already.
+    """
+    names, index = motion.skeleton.names, motion.skeleton.index(joint)
+    return _moved(motion, lambda forest: forest.split(index, names))
+
+
+def join(motion: Motion, root: Joint) -> Motion:
+    """The same motion without this root: its tree hangs on the joint that it was cut from.
+
+    A tree that was turned over since is turned back first. Where somebody edited the motion in between, so
+    that the bone is not what it was, the joint is translated in every frame; else it has its old offset.
+
+    Raises:
+        SkeletonError: there is no such joint, it is no root, it is the last root, or its tree was cut from
+            nothing.
+    """
+    names, index = motion.skeleton.names, motion.skeleton.index(root)
+    return _moved(motion, lambda forest: forest.join(index, names))
+
+
+def home(motion: Motion) -> Motion:
+    """The same motion in the configuration that it had before any root was moved.
+
+    Rows that were read come back as they were.
+    """
+    if motion.skeleton.home is None:
+        return motion
+    return carried(motion, motion.skeleton.home)
+
+
+def arranged(skeleton: Skeleton, forest: _core.Forest) -> Skeleton:
+    """The skeleton in another configuration."""
+    at_home = skeleton if skeleton.home is None else skeleton.home
+    topology = forest.topology
+    parents, bones = np.asarray(topology.parents), np.asarray(forest.bones)
+    if np.array_equal(parents, at_home.parents):
+        return at_home
+    is_turned = bones != np.arange(len(bones))
+    offsets = np.where(is_turned[:, None], -at_home.offsets[bones], at_home.offsets)
+    offsets[is_turned & (parents < 0)] = 0
+    return Skeleton(
+        at_home.names, parents, read_only(offsets), topology.slots, topology.slot_count, at_home.ends, at_home
+    )
+
+
+def configuration(skeleton: Skeleton, cut: Iterable[int], roots: Iterable[int]) -> Skeleton:
+    """The configuration in which the bones that end at home in the joints ``cut`` are cut.
+
+    Each tree hangs on the one of ``roots`` that is in it; one without hangs on its joint nearest to home.
+    """
+    at_home = skeleton if skeleton.home is None else skeleton.home
+    parents = at_home.parents.copy()
+    parents[list(cut)] = -1
+    for root in roots:
+        below, here = -1, root
+        while here >= 0:
+            above = int(parents[here])
+            parents[here] = below
+            below, here = here, above
+    return arranged(at_home, _core.Forest(at_home.topology, parents))
+
+
+def carried(motion: Motion, skeleton: Skeleton) -> Motion:
+    """The same motion on its skeleton in another configuration, ``skeleton``."""
+    source = motion.source
+    if motion.skeleton == skeleton:
+        return motion
+    if isinstance(source, Pose) and source.rows is not None and skeleton.home is None:
+        return replace(motion, skeleton=skeleton, source=source.rows)
+    rotations, translated, translations = _configured(motion, skeleton)
+    kept, translations = _without_still_bones(motion, skeleton, translated, translations)
+    rows = source if isinstance(source, Rows) else source.rows
+    pose = Pose(read_only(rotations), kept, read_only(translations), source.layout, rows)
+    return replace(motion, skeleton=skeleton, source=pose)
+
+
+def changed_at_home(
+    motion: Motion, change: Callable[[Motion], Motion], places: NDArray[np.integer[Any]]
+) -> Motion:
+    """``change`` of the motion at home, brought back to the configuration that the motion is in.
+
+    Args:
+        motion: not at home.
+        change: what is to be done to it there.
+        places: (J,) where the change puts each joint; -1: it is removed, and its children hang on its parent.
+    """
+    skeleton = motion.skeleton
+    at_home = cast(Skeleton, skeleton.home)
+    changed = change(home(motion))
+    cut = set()
+    waiting = np.flatnonzero(skeleton.links >= 0).tolist()
+    for joint in waiting:  # grows while it is walked
+        if places[joint] >= 0:
+            cut.add(int(places[joint]))
+        else:
+            waiting.extend(at_home.children[joint])
+    roots = [int(places[root]) for root in skeleton.roots if places[root] >= 0]
+    return carried(changed, configuration(changed.skeleton, cut, roots))
+
+
+def _moved(motion: Motion, change: Callable[[_core.Forest], _core.Forest]) -> Motion:
+    """The motion in the configuration that ``change`` makes of its own."""
+    try:
+        forest = change(motion.skeleton.forest)
+    except ValueError as error:
+        raise SkeletonError(str(error)) from None
+    return carried(motion, arranged(motion.skeleton, forest))
+
+
+def _configured(
+    motion: Motion, skeleton: Skeleton
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64]]:
+    """Rotations, the joints that may be translated, and their translations, as ``skeleton`` arranges them."""
+    before, after, offsets = motion.skeleton.forest, skeleton.forest, motion.skeleton.offsets
+    threads = 0 if motion.frame_count * skeleton.joint_count > _THREADING_PAYS else 1
+    source = motion.source
+    if isinstance(source, Rows) and "pose" not in motion.__dict__:
+        layout = source.layout
+        return _core.configure_euler(
+            before, after, offsets, layout.translated, source.values, layout.rotation_columns,
+            layout.rotation_axes, layout.translation_columns, layout.adds_offset, threads,
+        )  # fmt: skip
+    pose = motion.pose
+    return _core.configure(
+        before, after, offsets, pose.translated, pose.rotations, pose.translations, threads
+    )
+
+
+def _without_still_bones(
+    motion: Motion, skeleton: Skeleton, translated: NDArray[np.int32], translations: NDArray[np.float64]
+) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """The joints that are translated, without those whose bones were cut and are their offsets again.
+
+    A joint that has position channels at home stays translated all the same.
+    """
+    was_cut = np.asarray(motion.skeleton.links) >= 0
+    whole = [k for k, joint in enumerate(translated.tolist()) if skeleton.parents[joint] >= 0]
+    mended = [k for k in whole if was_cut[skeleton.forest.bones[translated[k]]]]
+    if not mended or not len(translations):
+        return translated, translations
+    reach = max(np.abs(translations).max(), np.abs(skeleton.offsets).max())
+    layout = motion.layout
+    moving = set() if layout is None else set(layout.translated.tolist())
+    still = []
+    for k in mended:
+        offset = skeleton.offsets[translated[k]]
+        as_offset = np.abs(translations[:, k] - offset).max(axis=0) <= _STILL * reach
+        translations[:, k, as_offset] = offset[as_offset]
+        if as_offset.all() and int(skeleton.forest.bones[translated[k]]) not in moving:
+            still.append(k)
+    kept = np.setdiff1d(np.arange(len(translated)), still)
+    return translated[kept], np.ascontiguousarray(translations[:, kept])
