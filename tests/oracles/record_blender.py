@@ -1,13 +1,14 @@
-"""Records where a real Blender puts the joints of BVH files.
+"""Records where a real Blender puts the joints and the bones of BVH files.
 
 Run by hand, with Blender 3.4 or newer on the path, whenever a file is added:
 
     cd tests/data/blender
-    blender --background --python ../../oracles/record_blender.py -- *.bvh .
+    blender --background --factory-startup --python ../../oracles/record_blender.py -- \\
+        *.bvh ../cmu_07_01.bvh ../../../python/gmr/data/demo/09_01.bvh .
 
-For each file it writes FILE.json into the folder named last: the heads of all pose bones in a few frames,
-turned back from Blender's Z-up to the file's Y-up, ``(x, y, z) = (X, Z, -Y)``, and the bones' heads and tails
-at rest.
+For each file it writes FILE.json into the folder named last: heads and tails of all bones at rest and in a
+few frames, turned back from Blender's Z-up to the file's Y-up, ``(x, y, z) = (X, Z, -Y)``, in the nine digits
+that tell a float32.
 """
 
 import builtins
@@ -30,7 +31,7 @@ builtins.open = open_without_universal_newlines
 
 
 def to_file_axes(vector):
-    return [vector.x, vector.z, -vector.y]
+    return [float(f"{value:.9g}") for value in (vector.x, vector.z, -vector.y)]
 
 
 def record(file):
@@ -40,18 +41,20 @@ def record(file):
     world = armature.matrix_world
     count = int(armature.animation_data.action.frame_range[1])
     frames = sorted({round(i * (count - 1) / (FRAMES - 1)) for i in range(FRAMES)})
-    heads = []
+    heads, tails = [], []
     for frame in frames:
         bpy.context.scene.frame_set(frame + 1)
         heads.append([to_file_axes(world @ bone.head) for bone in armature.pose.bones])
+        tails.append([to_file_axes(world @ bone.tail) for bone in armature.pose.bones])
     return {
         "blender": bpy.app.version_string,
         "file": file.name,
         "joints": [bone.name for bone in armature.pose.bones],
         "frames": frames,
         "heads": heads,
-        "rest_tails": [to_file_axes(world @ bone.tail_local) for bone in armature.data.bones],
+        "tails": tails,
         "rest_heads": [to_file_axes(world @ bone.head_local) for bone in armature.data.bones],
+        "rest_tails": [to_file_axes(world @ bone.tail_local) for bone in armature.data.bones],
     }
 
 
