@@ -27,5 +27,5 @@ def test_positions_are_where_blender_puts_them(file: Path) -> None:
     np.testing.assert_allclose(ours, theirs, rtol=0, atol=5e-6 * max(height, np.abs(theirs).max()))
 
 
-def test_there_are_three_files() -> None:
-    assert len(FILES) == 3
+def test_there_are_five_files() -> None:
+    assert len(FILES) == 5

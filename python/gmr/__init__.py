@@ -17,6 +17,7 @@ from gmr.errors import (
 if TYPE_CHECKING:
     from gmr import evaluation, matching
     from gmr._core import __version__
+    from gmr.bone_tails import Bones, bones
     from gmr.channels import ChannelLayout
     from gmr.concatenation import concatenate
     from gmr.evaluation.evaluate import evaluate
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from gmr.skeleton import Skeleton
 
 __all__ = [
+    "Bones",
     "ChannelLayout",
     "DatasetError",
     "Evaluation",
@@ -38,6 +40,7 @@ __all__ = [
     "Skeleton",
     "SkeletonError",
     "__version__",
+    "bones",
     "concatenate",
     "evaluate",
     "evaluation",
@@ -51,11 +54,13 @@ __all__ = [
 # What needs NumPy or the core is imported when first used: `gmr --help` answers at once, and an instruction
 # set that this machine has not (GMR_ISA) is the command line's to explain.
 _HOMES = {
+    "Bones": "gmr.bone_tails",
     "ChannelLayout": "gmr.channels",
     "Evaluation": "gmr.evaluation.result",
     "Motion": "gmr.motion",
     "Skeleton": "gmr.skeleton",
     "__version__": "gmr._core",
+    "bones": "gmr.bone_tails",
     "concatenate": "gmr.concatenation",
     "evaluate": "gmr.evaluation.evaluate",
     "forward_kinematics": "gmr.kinematics",
