@@ -230,3 +230,16 @@ def test_a_frame_that_is_not_there_is_refused(frame: int) -> None:
 def test_no_frames_are_no_bones_in_frames() -> None:
     motion = hip("thighL")[:0]
     assert gmr.bones(motion, frame=slice(None)).tails.shape == (0, motion.skeleton.joint_count, 3)
+
+
+@given(motions(min_frames=1), st.sampled_from(RULES), st.data())
+def test_bones_do_not_depend_on_which_joints_are_roots(
+    motion: Motion, rule: str, data: st.DataObject
+) -> None:
+    joint = data.draw(st.integers(0, motion.skeleton.joint_count - 1))
+    moved = motion.shift_root(joint)
+    for frame in (None, slice(None)):
+        one, other = gmr.bones(motion, rule, frame), gmr.bones(moved, rule, frame)
+        np.testing.assert_array_equal(one.joints, other.joints)
+        np.testing.assert_allclose(one.heads, other.heads, atol=1e-9)
+        np.testing.assert_allclose(one.tails, other.tails, atol=1e-9)

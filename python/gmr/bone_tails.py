@@ -75,7 +75,7 @@ def bones(motion: Motion, rule: str = "centroid", frame: int | slice | None = No
     rules draw lines between joints: the tail is the child's place.
 
     Args:
-        motion: J joints. Where its roots were moved, the bones are those of its forest as it stands.
+        motion: J joints. The bones are those that it has at home, wherever its roots are.
         rule: "centroid", "first_child" or "per_child".
         frame: None: the rest pose, each root at its OFFSET; an index, from the end where negative; or a slice
             of F frames.
@@ -89,8 +89,9 @@ def bones(motion: Motion, rule: str = "centroid", frame: int | slice | None = No
     Source: a post on bone offsets in Blender's and other renderings of the CMU data set; Blender 3.4.1,
     measured.
     """
-    segments = _segments(motion.skeleton, rule)
-    heads, tails = _at_rest(motion.skeleton, segments, rule)
+    skeleton = motion.skeleton.home or motion.skeleton
+    segments = _segments(skeleton, rule)
+    heads, tails = _at_rest(skeleton, segments, rule)
     if isinstance(frame, slice):
         heads, tails = _in_frames(motion[frame], segments, tails - heads, rule)
     elif frame is not None:
@@ -181,13 +182,13 @@ def _frames_of(skeleton: Skeleton) -> tuple[NDArray[np.int32], NDArray[np.bool_]
 
     A joint without one frame is given that of the bone that ends in it.
     """
-    world = np.asarray(skeleton.topology.world_slots, np.int32)
-    slots, has_frame = world.copy(), np.ones(len(world), bool)
-    for joint, children in enumerate(skeleton.children):
-        turning = {int(world[child]) for child in children}
-        has_frame[joint] = len(turning) <= 1
-        if len(turning) == 1:
-            (slots[joint],) = turning
+    at_home = skeleton.home or skeleton
+    world, turned_by = np.asarray(at_home.topology.world_slots), skeleton.bone_slots
+    slots, has_frame = turned_by.copy(), np.ones(len(world), bool)
+    for joint, children in enumerate(at_home.children):
+        has_frame[joint] = len({int(world[child]) for child in children}) <= 1
+        if children and has_frame[joint]:
+            slots[joint] = turned_by[children[0]]
     return slots, has_frame
 
 
