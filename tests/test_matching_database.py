@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import gmr
+from gmr.demo import demo_folder
 from gmr.errors import DatasetError
 from gmr.matching import LOCOMOTION, Database, Group, Schema
 from gmr.motion import Motion
@@ -310,3 +311,10 @@ def test_a_torso_is_refused_before_anything_is_measured() -> None:
     motion = Motion.from_pose(torso, rest, np.zeros((90, 1, 3)), 1 / 60)
     with pytest.raises(DatasetError, match="no joint that is known as left up leg"):
         Database.build([motion])
+
+
+def test_the_configuration_of_a_clip_does_not_matter() -> None:
+    clip = gmr.read(demo_folder() / "07_01.bvh")
+    moved = clip.with_roots(["LeftFoot", "Head"])
+    one, other = (gmr.matching.Database.build([motion]) for motion in (clip, moved))
+    np.testing.assert_array_equal(one.features, other.features)

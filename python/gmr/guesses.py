@@ -89,7 +89,7 @@ def guess_body(motion: Motion) -> BodyGuess:
     positions = positions[np.isfinite(positions).all(axis=(1, 2))]
     if not len(positions):
         return BodyGuess(None, None, None)
-    skeleton = motion.skeleton
+    skeleton = motion.skeleton.home or motion.skeleton
     roles = _roles(skeleton, positions)
     up = UpGuess(up_axis(positions, roles), sure=True) if roles else _up(skeleton.names, positions)
     if up is None:

@@ -11,6 +11,7 @@ import numpy as np
 from gmr.body.joints import Joints, find_joints
 from gmr.body.measures import Poses, leg_length, turned_upright, up_axis
 from gmr.errors import DatasetError
+from gmr.forest import home
 from gmr.guesses import GUESSED_UNITS, unit_of_legs
 from gmr.listing import quoted
 from gmr.matching.prepare import in_metres_upright, unit_text
@@ -80,7 +81,7 @@ def survey(
         DatasetError: no clip is usable or long enough, the clips have different skeletons, or the skeleton
         has no known body.
     """
-    usable, excluded = _usable(motions)
+    usable, excluded = _usable({name: home(motion) for name, motion in motions.items()})
     usable, skipped, notes = _without_tposes(usable)
     usable = _on_one_skeleton(usable, excluded)
     notes += _short_notes(usable, shortest)
