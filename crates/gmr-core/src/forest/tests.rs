@@ -303,8 +303,7 @@ fn what_cannot_be_done_is_refused_in_words() {
 fn frames_come_straight_from_rows_of_a_file() {
     let forest = body();
     let rows: Vec<f64> = (0..9 * 40).map(|k| f64::from(k * 37 % 101) - 50.0).collect();
-    let angles =
-        EulerColumns { columns: &[[3, 4, 5], [6, 7, 8]], axes: &[[2, 0, 1].into(), [0, 1, 2].into()] };
+    let angles = EulerColumns { columns: &[[3, 4, 5], [6, 7, 8]], axes: &[[2, 0, 1], [0, 1, 2]] };
     let offsets = [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.5, 0.0, 0.0, -0.5, 0.0, 0.0];
     let to = forest.with_roots(&[2, 3]).unwrap();
     let mut quaternions = vec![0.0; 40 * 2 * 4];

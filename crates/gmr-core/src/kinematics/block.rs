@@ -83,11 +83,6 @@ pub(crate) fn solve<L: Lanes, S: Source<L>>(
 }
 
 #[inline(always)]
-pub(super) fn splat<L: Lanes>([x, y, z]: [L::Real; 3]) -> [L; 3] {
-    [L::splat(x), L::splat(y), L::splat(z)]
-}
-
-#[inline(always)]
 fn add<L: Lanes>(a: [L; 3], b: [L; 3]) -> [L; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }

@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use super::block::splat;
 use super::plan::{Bone, Plan};
 use super::{ForwardKinematics, Pose};
 use crate::lanes::rows::{SourceRows, groups};
@@ -149,4 +148,9 @@ impl<L: Lanes> Source<L> for Rows<'_, L> {
         }
         vector
     }
+}
+
+#[inline(always)]
+fn splat<L: Lanes>([x, y, z]: [L::Real; 3]) -> [L; 3] {
+    [L::splat(x), L::splat(y), L::splat(z)]
 }
