@@ -135,6 +135,24 @@ main(["--help"])
     assert done.stdout == ""
 
 
+def test_nothing_else_is_loaded_before_an_interrupt_can_be_answered() -> None:
+    code = "import sys; held = {*sys.modules}; import gmr.cli; print(*sorted({*sys.modules} - held))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "gmr gmr.cli\n"
+
+
+def test_an_interrupt_outside_of_the_command_is_one_sentence() -> None:
+    code = "from gmr.cli import main; import signal; signal.signal(2, signal.default_int_handler); {}"
+    launcher = [sys.executable, "-c", code.format("signal.raise_signal(signal.SIGINT)")]
+    done = subprocess.run(launcher, capture_output=True, text=True, check=False)
+    assert done.returncode in (-signal.SIGINT, 128 + signal.SIGINT)
+    assert done.stderr == "gmr: interrupted; no file was left half-written\n"
+    launcher[-1] = code.format("raise RuntimeError('a fault')")
+    done = subprocess.run(launcher, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert done.stderr.startswith("Traceback")
+
+
 @pytest.mark.parametrize("source", [None, 3, ["walk.bvh"]])
 def test_what_is_no_source_is_said_to_be_none(source: Any) -> None:
     with pytest.raises(TypeError, match="read from a path, bytes or an open file"):
