@@ -184,6 +184,35 @@ def test_ctrl_c_is_one_sentence_and_leaves_nothing(folder: Path, tmp_path: Path)
     assert not out.exists()
 
 
+@pytest.mark.parametrize("option", ["--out", "--tables"])
+def test_a_place_that_cannot_be_written_to_is_found_before_the_work(
+    folder: Path, tmp_path: Path, capsys: Captured, option: str
+) -> None:
+    file = tmp_path / "file"
+    file.write_text("")
+    place = file / "new" / "place"
+    assert run(folder, *SMALL[:-1], "-o", tmp_path / "report.html", option, place) == 1
+    said = capsys.readouterr()
+    assert said.err == (
+        f"gmr: {place}: Not a directory (while looking where to write); no file was left half-written\n"
+    )
+    assert sorted(tmp_path.iterdir()) == [file, folder]
+
+
+def test_a_place_without_permission_is_found_before_the_work(
+    folder: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Permissions do not bind whoever runs the tests as root, so the system's answer is played.
+    def forbidden(path: object, *_: object, **__: object) -> int:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr("gmr.replacing.os.open", forbidden)
+    assert run(folder, "-o", tmp_path / "report.html") == 1
+    said = capsys.readouterr().err
+    assert said.startswith(f"gmr: {tmp_path / 'report.html'}: Permission denied (while looking")
+    assert said.count("\n") == 1
+
+
 def test_a_disk_that_fills_up_is_one_sentence_and_leaves_nothing(folder: Path, tmp_path: Path) -> None:
     # A limit on the size of files stands for the full disk: both end a write half-way with an OSError.
     def small_files_only() -> None:

@@ -155,6 +155,7 @@ def evaluate(
         raise click.UsageError(f"{error}.") from error
     phases = Phases(quiet)
     with phases, _trouble_with_files(phases):
+        _check_places(None if no_report else out, tables, phases)
         found = gmr.evaluate(
             folder,
             preset=preset,
@@ -172,6 +173,19 @@ def evaluate(
     for file, why in found.failed.items():
         say(f"left out {why if file in why else f'{file}: {why}'}")
     return 1 if found.failed else 0
+
+
+def _check_places(out: Path | None, tables: Path | None, phases: Phases) -> None:
+    """Learn before all the work that its results cannot be kept."""
+    from gmr.replacing import check_place
+
+    phases.current = "looking where to write"
+    if tables is not None:
+        with _naming(tables):
+            check_place(tables / "trials.csv")
+    if out is not None:
+        with _naming(out):
+            check_place(out)
 
 
 def _write(found: Evaluation, out: Path | None, tables: Path | None, phases: Phases) -> dict[str, Any]:
