@@ -117,6 +117,8 @@ def test_a_broken_file_is_named_and_the_exit_code_is_1(folder: Path, capsys: Cap
         (("takes", "--name", "paw=LeftFoot"), "no role is called 'paw'"),
         (("takes", "--turn-rates", "nan"), "turn rate must be"),
         (("takes", "--name", "left_foot"), "ROLE=JOINT"),
+        (("takes", "--name", "left_foot=L", "--name", "left_foot=R"), "named twice, L and R"),
+        (("takes", "--unit", "1e30"), "a unit cannot be 1e+30 metres"),
         (("takes", "--preset", "mig2023"), "mig2022"),
         (("takes", "--threads", "0"), "threads"),
     ],
@@ -154,9 +156,16 @@ def test_a_dataset_that_cannot_be_evaluated_is_one_sentence(
 
 def test_joints_can_be_named(folder: Path, capsys: Captured) -> None:
     assert run(folder, *SMALL, "--name", "left_foot=Paw") == 1
-    assert "Paw" in capsys.readouterr().err
+    assert capsys.readouterr().err.splitlines()[-1].startswith("gmr: left_foot=Paw: there is no joint 'Paw'")
     assert run(folder, *SMALL, "--name", "left_foot=LeftFoot", "--json") == 0
     assert json.loads(capsys.readouterr().out)["joints"]["left_foot"] == "LeftFoot"
+
+
+def test_the_only_file_of_a_folder_is_not_counted(folder: Path, capsys: Captured) -> None:
+    (folder / "walk.bvh").unlink()
+    (folder / "run.bvh").write_text("nonsense")
+    assert run(folder, "--quiet", "--no-report") == 1
+    assert "the only motion file of" in capsys.readouterr().err
 
 
 def test_ranges_have_both_ends(folder: Path, capsys: Captured) -> None:

@@ -61,11 +61,13 @@ def _values(
 
 def _roles(context: click.Context, option: click.Parameter, pairs: tuple[str, ...] | None) -> dict[str, str]:
     """Joints typed as ROLE=JOINT."""
-    roles = {}
+    roles: dict[str, str] = {}
     for text in pairs or ():
         role, _, joint = text.partition("=")
         if not (role and joint):
             raise click.BadParameter(f"{text!r} is not ROLE=JOINT, as in left_foot=foot_l.")
+        if role in roles:
+            raise click.BadParameter(f"'{role}' is named twice, {roles[role]} and {joint}; say which it is.")
         roles[role] = joint
     if roles:
         from gmr.body.naming import ROLES
