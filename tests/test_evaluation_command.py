@@ -14,7 +14,7 @@ import pytest
 from gmr.cli.commands import gmr as command
 from gmr.cli.common import finished
 from locomotion import Arc
-from walker import write_walkers
+from walker import walker_bvh, write_walkers
 
 SMALL = ("--speeds", "1,2", "--turn-rates", "-50:50:50", "--no-report")
 PROGRAM = (sys.executable, "-m", "gmr", "evaluate")
@@ -166,6 +166,19 @@ def test_the_only_file_of_a_folder_is_not_counted(folder: Path, capsys: Captured
     (folder / "run.bvh").write_text("nonsense")
     assert run(folder, "--quiet", "--no-report") == 1
     assert "the only motion file of" in capsys.readouterr().err
+
+
+def test_clips_of_another_skeleton_are_left_out_in_one_sentence(folder: Path, capsys: Captured) -> None:
+    for name in ("odd.bvh", "queer.bvh"):
+        (folder / name).write_text(walker_bvh(Arc(2.0, 1.0)).replace("JOINT Head", "JOINT Kopf"))
+    assert run(folder, *SMALL, "--quiet") == 1
+    said = capsys.readouterr()
+    assert said.err == (
+        "gmr: left out odd.bvh, queer.bvh: another skeleton than that of the clips evaluated, "
+        "without 'Head', 'Head_end' and with 'Kopf', 'Kopf_end' besides\n"
+    )
+    assert "2 of 4 clips have the one of most of the time" in " ".join(said.out.split())
+    assert "give them a folder of their own" in " ".join(said.out.split())
 
 
 def test_ranges_have_both_ends(folder: Path, capsys: Captured) -> None:

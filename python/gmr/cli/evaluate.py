@@ -16,6 +16,7 @@ import click
 from gmr.cli.common import Unit, say
 from gmr.cli.progress import Phases
 from gmr.errors import GmrError
+from gmr.listing import listed
 
 if TYPE_CHECKING:
     from gmr.evaluation import Evaluation
@@ -172,9 +173,19 @@ def evaluate(
         )
         written = _write(found, None if no_report else out, tables, phases)
     click.echo(_summary(found, written) if as_json else _verdict(found, written))
-    for file, why in found.failed.items():
-        say(f"left out {why if file in why else f'{file}: {why}'}")
+    for sentence in _left_out(found.failed):
+        say(sentence)
     return 1 if found.failed else 0
+
+
+def _left_out(failed: Mapping[str, str]) -> Iterator[str]:
+    """A sentence for each reason for which files were left out."""
+    files: dict[str, list[str]] = {}
+    for file, why in failed.items():
+        files.setdefault(why, []).append(file)
+    for why, alike in files.items():
+        named = len(alike) == 1 and alike[0] in why
+        yield f"left out {why}" if named else f"left out {listed(alike, 5)}: {why}"
 
 
 def _check_places(out: Path | None, tables: Path | None, phases: Phases) -> None:
