@@ -135,6 +135,59 @@ main(["--help"])
     assert done.stdout == ""
 
 
+def test_nothing_else_is_loaded_before_an_interrupt_can_be_answered() -> None:
+    code = "import sys; held = {*sys.modules}; import gmr.cli; print(*sorted({*sys.modules} - held))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "gmr gmr.cli\n"
+
+
+def test_an_interrupt_outside_of_the_command_is_one_sentence() -> None:
+    code = "from gmr.cli import main; import signal; signal.signal(2, signal.default_int_handler); {}"
+    launcher = [sys.executable, "-c", code.format("signal.raise_signal(signal.SIGINT)")]
+    done = subprocess.run(launcher, capture_output=True, text=True, check=False)
+    assert done.returncode in (-signal.SIGINT, 128 + signal.SIGINT)
+    assert done.stderr == "gmr: interrupted; no file was left half-written\n"
+    launcher[-1] = code.format("raise RuntimeError('a fault')")
+    done = subprocess.run(launcher, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert done.stderr.startswith("Traceback")
+
+
+def test_a_folder_is_not_converted_into_what_is_called_like_a_file(
+    walk_path: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    (tmp_path / "takes").mkdir()
+    (tmp_path / "takes" / "walk.bvh").write_bytes(walk_path.read_bytes())
+    assert run("convert", tmp_path / "takes", tmp_path / "out.bvh") == 2
+    assert "is called like a file; give a name without the suffix" in " ".join(
+        capsys.readouterr().err.split()
+    )
+    assert not (tmp_path / "out.bvh").exists()
+
+
+def test_a_format_that_is_not_known_gets_remedies_for_both_faces(tmp_path: Path, capsys: Captured) -> None:
+    (tmp_path / "walk.txt").write_text("HIERARCHY")
+    assert run("info", tmp_path / "walk.txt") == 1
+    said = capsys.readouterr().err
+    assert "in Python (format='bvh'), or put - in its place on the command line" in said
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_disk_that_fills_up_under_standard_output_is_one_sentence(
+    walk_path: Path, tmp_path: Path, unbuffered: str
+) -> None:
+    import resource
+
+    # The limit lets a first part of the file through, as a disk does that is nearly full.
+    with (tmp_path / "out.bvh").open("wb") as out:
+        done = process(
+            "convert", walk_path, "-", stdout=out, env=os.environ | {"PYTHONUNBUFFERED": unbuffered},
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192)),
+        )  # fmt: skip
+    assert done.returncode == 1
+    assert done.stderr == "gmr: standard output: File too large\n"
+
+
 @pytest.mark.parametrize("source", [None, 3, ["walk.bvh"]])
 def test_what_is_no_source_is_said_to_be_none(source: Any) -> None:
     with pytest.raises(TypeError, match="read from a path, bytes or an open file"):

@@ -14,7 +14,7 @@ import pytest
 from gmr.cli.commands import gmr as command
 from gmr.cli.common import finished
 from locomotion import Arc
-from walker import write_walkers
+from walker import walker_bvh, write_walkers
 
 SMALL = ("--speeds", "1,2", "--turn-rates", "-50:50:50", "--no-report")
 PROGRAM = (sys.executable, "-m", "gmr", "evaluate")
@@ -117,6 +117,8 @@ def test_a_broken_file_is_named_and_the_exit_code_is_1(folder: Path, capsys: Cap
         (("takes", "--name", "paw=LeftFoot"), "no role is called 'paw'"),
         (("takes", "--turn-rates", "nan"), "turn rate must be"),
         (("takes", "--name", "left_foot"), "ROLE=JOINT"),
+        (("takes", "--name", "left_foot=L", "--name", "left_foot=R"), "named twice, L and R"),
+        (("takes", "--unit", "1e30"), "a unit cannot be 1e+30 metres"),
         (("takes", "--preset", "mig2023"), "mig2022"),
         (("takes", "--threads", "0"), "threads"),
     ],
@@ -154,9 +156,29 @@ def test_a_dataset_that_cannot_be_evaluated_is_one_sentence(
 
 def test_joints_can_be_named(folder: Path, capsys: Captured) -> None:
     assert run(folder, *SMALL, "--name", "left_foot=Paw") == 1
-    assert "Paw" in capsys.readouterr().err
+    assert capsys.readouterr().err.splitlines()[-1].startswith("gmr: left_foot=Paw: there is no joint 'Paw'")
     assert run(folder, *SMALL, "--name", "left_foot=LeftFoot", "--json") == 0
     assert json.loads(capsys.readouterr().out)["joints"]["left_foot"] == "LeftFoot"
+
+
+def test_the_only_file_of_a_folder_is_not_counted(folder: Path, capsys: Captured) -> None:
+    (folder / "walk.bvh").unlink()
+    (folder / "run.bvh").write_text("nonsense")
+    assert run(folder, "--quiet", "--no-report") == 1
+    assert "the only motion file of" in capsys.readouterr().err
+
+
+def test_clips_of_another_skeleton_are_left_out_in_one_sentence(folder: Path, capsys: Captured) -> None:
+    for name in ("odd.bvh", "queer.bvh"):
+        (folder / name).write_text(walker_bvh(Arc(2.0, 1.0)).replace("JOINT Head", "JOINT Kopf"))
+    assert run(folder, *SMALL, "--quiet") == 1
+    said = capsys.readouterr()
+    assert said.err == (
+        "gmr: left out odd.bvh, queer.bvh: another skeleton than that of the clips evaluated, "
+        "without 'Head', 'Head_end' and with 'Kopf', 'Kopf_end' besides\n"
+    )
+    assert "2 of 4 clips have the one of most of the time" in " ".join(said.out.split())
+    assert "give them a folder of their own" in " ".join(said.out.split())
 
 
 def test_ranges_have_both_ends(folder: Path, capsys: Captured) -> None:
@@ -182,6 +204,35 @@ def test_ctrl_c_is_one_sentence_and_leaves_nothing(folder: Path, tmp_path: Path)
     assert rest.strip().endswith("no file was left half-written")
     assert "Traceback" not in rest
     assert not out.exists()
+
+
+@pytest.mark.parametrize("option", ["--out", "--tables"])
+def test_a_place_that_cannot_be_written_to_is_found_before_the_work(
+    folder: Path, tmp_path: Path, capsys: Captured, option: str
+) -> None:
+    file = tmp_path / "file"
+    file.write_text("")
+    place = file / "new" / "place"
+    assert run(folder, *SMALL[:-1], "-o", tmp_path / "report.html", option, place) == 1
+    said = capsys.readouterr()
+    assert said.err == (
+        f"gmr: {place}: Not a directory (while looking where to write); no file was left half-written\n"
+    )
+    assert sorted(tmp_path.iterdir()) == [file, folder]
+
+
+def test_a_place_without_permission_is_found_before_the_work(
+    folder: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Permissions do not bind whoever runs the tests as root, so the system's answer is played.
+    def forbidden(path: object, *_: object, **__: object) -> int:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr("gmr.replacing.os.open", forbidden)
+    assert run(folder, "-o", tmp_path / "report.html") == 1
+    said = capsys.readouterr().err
+    assert said.startswith(f"gmr: {tmp_path / 'report.html'}: Permission denied (while looking")
+    assert said.count("\n") == 1
 
 
 def test_a_disk_that_fills_up_is_one_sentence_and_leaves_nothing(folder: Path, tmp_path: Path) -> None:

@@ -209,7 +209,7 @@ def test_a_folder_without_motions_is_refused_with_a_remedy(tmp_path: Path) -> No
 
 def test_a_folder_of_broken_files_is_refused_with_the_first_reason(tmp_path: Path) -> None:
     (tmp_path / "a.bvh").write_text("nonsense")
-    with pytest.raises(gmr.DatasetError, match=r"none of the 1 motion files .* could be read; .*a\.bvh"):
+    with pytest.raises(gmr.DatasetError, match=r"the only motion file of .* could not be read: .*a\.bvh"):
         gmr.evaluate(tmp_path)
 
 
@@ -238,8 +238,8 @@ def test_settings_that_make_no_sense_are_refused_before_anything_is_read(tmp_pat
         gmr.evaluate(missing, preset="mig2023")
     with pytest.raises(ValueError, match="at least one speed"):
         gmr.evaluate(missing, speeds=[])
-    with pytest.raises(ValueError, match="at least 1 thread"):
-        gmr.evaluate(missing, threads=0)
+    with pytest.raises(ValueError, match="there cannot be -1 threads"):
+        gmr.evaluate(missing, threads=-1)
     with pytest.raises(gmr.FormatError, match="no such folder"):
         gmr.evaluate(missing)
 

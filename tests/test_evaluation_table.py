@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from gmr.evaluation import Table
-from gmr.replacing import replacing
+from gmr.replacing import check_place, replacing
 
 NAMES = ["walk.bvh", 'quick, "sharp" turn.bvh', "two\nlines.bvh", "Gänge/läuft.bvh"]
 
@@ -120,6 +120,56 @@ def test_the_permissions_of_other_files_are_left_alone_while_one_is_written(
     with replacing(tmp_path / "ours") as (file,):
         file.write(b"x")
     assert (tmp_path / "ours").read_bytes() == b"x"
+
+
+def test_the_file_that_a_link_leads_to_is_replaced(tmp_path: Path) -> None:
+    (tmp_path / "there").mkdir()
+    link = tmp_path / "ours"
+    link.symlink_to("there/ours")
+    for content in (b"first", b"second"):
+        with replacing(link) as (file,):
+            file.write(content)
+        assert link.is_symlink()
+        assert (tmp_path / "there" / "ours").read_bytes() == content
+
+
+def test_what_is_no_file_is_written_to_and_stays(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    check_place(pipe)
+    with replacing(pipe) as (file,):
+        file.write(b"x")
+    assert os.read(reader, 10) == b"x"
+    os.close(reader)
+    assert pipe.is_fifo()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no /dev/full")
+def test_a_device_stays_what_it_is() -> None:
+    check_place("/dev/full")
+    with pytest.raises(OSError, match="No space left"), replacing("/dev/full") as (file,):  # noqa: PT012
+        file.write(b"x")
+        file.flush()
+    assert Path("/dev/full").is_char_device()
+
+
+@pytest.mark.parametrize("place", ["file", "new", "missing/folders/new", "link"])
+def test_a_place_that_can_be_written_to_is_left_as_it_was(tmp_path: Path, place: str) -> None:
+    (tmp_path / "file").write_text("old")
+    (tmp_path / "link").symlink_to("nowhere")
+    before = sorted(tmp_path.rglob("*"))
+    check_place(tmp_path / place)
+    assert sorted(tmp_path.rglob("*")) == before
+    assert (tmp_path / "file").read_text() == "old"
+
+
+@pytest.mark.parametrize("place", ["file/new", "file/folder/new", "n" * 300, "missing/" + "n" * 300])
+def test_a_place_that_cannot_be_written_to_is_found_beforehand(tmp_path: Path, place: str) -> None:
+    (tmp_path / "file").write_text("old")
+    with pytest.raises(OSError, match=r"Not a directory|File name too long"):
+        check_place(tmp_path / place)
+    assert list(tmp_path.iterdir()) == [tmp_path / "file"]
 
 
 def test_the_same_table_gives_the_same_bytes(table: Table) -> None:

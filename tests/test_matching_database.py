@@ -193,7 +193,10 @@ def test_a_clip_with_another_skeleton_is_left_out_by_name() -> None:
     odd = walker(2.0, names=CMU | {"head": "Kopf"}, name="odd.bvh")
     database = Database.build([*WALKS, odd])
     assert database.clip_names == ("curve", "run")
-    assert "it lacks 'Head' and it has 'Kopf' besides" in database.excluded["odd.bvh"]
+    assert "without 'Head' and with 'Kopf' besides" in database.excluded["odd.bvh"]
+    assert any(
+        "2 of 3 clips have the one" in note and "a folder of their own" in note for note in database.notes
+    )
     with pytest.raises(DatasetError, match=r"2 different skeletons \('usual'; 'odd.bvh'\)"):
         Database.build([walker(2.0, name="usual"), odd])
 

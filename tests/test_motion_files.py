@@ -124,7 +124,7 @@ def test_a_motion_that_cannot_be_written_leaves_nothing(walk_path: Path, tmp_pat
     motion = gmr.read(walk_path)
     for place, said in (
         (tmp_path / "nowhere" / "walk.bvh", "make it first"),
-        (tmp_path, "is none that gmr knows"),
+        (tmp_path, "this is a folder; name a file in it"),
         (tmp_path / "walk.fbx", "is none that gmr knows"),
     ):
         with pytest.raises(GmrError, match=said):

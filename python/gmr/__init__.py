@@ -1,25 +1,24 @@
 """gmr: motion capture at memory speed."""
 
-from __future__ import annotations
-
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
-from gmr.errors import (
-    DatasetError,
-    FormatError,
-    FormatWarning,
-    GmrError,
-    MissingExtraError,
-    SkeletonError,
-)
+# Nothing is imported here, not even typing: the command line can answer an interrupt only after this module.
+TYPE_CHECKING = False
 
 if TYPE_CHECKING:
+    from typing import Any
+
     from gmr import evaluation, matching
     from gmr._core import __version__
     from gmr.bone_tails import Bones, bones
     from gmr.channels import ChannelLayout
     from gmr.concatenation import concatenate
+    from gmr.errors import (
+        DatasetError,
+        FormatError,
+        FormatWarning,
+        GmrError,
+        MissingExtraError,
+        SkeletonError,
+    )
     from gmr.evaluation.evaluate import evaluate
     from gmr.evaluation.result import Evaluation
     from gmr.formats import read, read_folder, write
@@ -51,14 +50,20 @@ __all__ = [
     "write",
 ]
 
-# What needs NumPy or the core is imported when first used: `gmr --help` answers at once, and an instruction
-# set that this machine has not (GMR_ISA) is the command line's to explain.
+# All is imported when first used: `gmr --help` answers at once, and an instruction set that this machine has
+# not (GMR_ISA) is the command line's to explain.
 _HOMES = {
     "Bones": "gmr.bone_tails",
     "ChannelLayout": "gmr.channels",
+    "DatasetError": "gmr.errors",
     "Evaluation": "gmr.evaluation.result",
+    "FormatError": "gmr.errors",
+    "FormatWarning": "gmr.errors",
+    "GmrError": "gmr.errors",
+    "MissingExtraError": "gmr.errors",
     "Motion": "gmr.motion",
     "Skeleton": "gmr.skeleton",
+    "SkeletonError": "gmr.errors",
     "__version__": "gmr._core",
     "bones": "gmr.bone_tails",
     "concatenate": "gmr.concatenation",
@@ -71,7 +76,9 @@ _HOMES = {
 _MODULES = frozenset({"evaluation", "matching"})
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> "Any":
+    from importlib import import_module
+
     if name in _MODULES:
         return import_module(f"gmr.{name}")
     if name not in _HOMES:

@@ -31,10 +31,16 @@ def concatenate(motions: Sequence[Motion]) -> Motion:
     Raises:
         GmrError: nothing to concatenate, or rate or unit differ.
         SkeletonError: the skeletons differ, or a different joint moves.
+        TypeError: one of them is no motion.
     """
+    if isinstance(motions, Motion):
+        raise TypeError("several motions are concatenated: put this one into a list, [motion]")
     motions = list(motions)
     if not motions:
         raise GmrError("there is nothing to concatenate; give at least one motion")
+    for motion in motions:
+        if not isinstance(motion, Motion):
+            raise TypeError(f"motions are needed here, not {motion!r:.60}; read files with gmr.read")
     first, *others = motions
     if not others:
         return first

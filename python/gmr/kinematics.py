@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gmr import _core
 from gmr.errors import GmrError, SkeletonError
+from gmr.threads import thread_count
 
 __all__ = ["forward_kinematics"]
 
@@ -117,13 +118,13 @@ def forward_kinematics(
     places = _room(out, (*lead, len(wanted), 3), turns.dtype)
     frames = int(np.prod(lead))
     turned = np.empty((frames, joint_count, 4), turns.dtype) if world_rotations else None
-    if threads is None:
-        threads = 0 if frames * joint_count > _THREADING_PAYS else 1
+    by_default = 0 if frames * joint_count > _THREADING_PAYS else 1
+    thread_total = thread_count(threads, by_default)
     try:
         _core.forward_kinematics(
             topology, turns.reshape(frames, joint_count, 4), moving, moves.reshape(frames, len(moving), 3),
             vectors, wanted, np.arange(joint_count, dtype=np.int32), places.reshape(frames, len(wanted), 3),
-            turned, threads, normalize=normalize,
+            turned, thread_total, normalize=normalize,
         )  # fmt: skip
     except ValueError as error:
         raise GmrError(str(error)) from None
@@ -166,7 +167,10 @@ def _indices(values: ArrayLike, name: str, count: int) -> NDArray[np.int32]:
 
 def _floats(values: ArrayLike, name: str) -> NDArray[Any]:
     """A C-contiguous float32 or float64 array."""
-    found = np.asarray(values)
+    try:
+        found = np.asarray(values)
+    except ValueError as error:
+        raise GmrError(f"{name} is no array: its rows are not equally long") from error
     if found.dtype.kind not in "fiu":
         raise GmrError(f"{name} must be real numbers, not {found.dtype}")
     return np.ascontiguousarray(found, found.dtype if found.dtype == np.float32 else np.float64)
@@ -199,6 +203,8 @@ def _room(out: FloatArray | None, shape: tuple[int, ...], dtype: np.dtype[Any]) 
     """``out``, or a new array."""
     if out is None:
         return np.empty(shape, dtype)
+    if not isinstance(out, np.ndarray):
+        raise TypeError(f"out must be an array to write into, not {out!r:.60}")
     if out.shape != shape or out.dtype != dtype or not (out.flags.c_contiguous and out.flags.writeable):
         raise GmrError(
             f"out must be a writable, C-contiguous {dtype} array of shape {shape}; "

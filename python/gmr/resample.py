@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import numbers
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -50,6 +51,8 @@ def resample(motion: Motion, fps: float) -> Motion:
     Raises:
         GmrError: the rate is not above 0 or absurdly high, or the motion has a frame time of 0.
     """
+    if not isinstance(fps, numbers.Real):
+        raise TypeError(f"a rate is a number of frames a second, not {fps!r}")
     if not (math.isfinite(fps) and fps > 0):
         raise GmrError(f"a motion cannot be resampled to {fps} frames a second; give a rate above 0")
     if motion.frame_time == 0:

@@ -216,6 +216,8 @@ class Skeleton:
                 is out of range.
         """
         if not isinstance(joint, str):
+            if not isinstance(joint, int | np.integer):
+                raise TypeError(f"a joint is given by its name or its index, not by {joint!r}")
             if 0 <= joint < self.joint_count:
                 return int(joint)
             raise SkeletonError(
@@ -239,6 +241,8 @@ class Skeleton:
 
     def indices(self, joints: Iterable[str | int | np.integer[Any]]) -> NDArray[np.int32]:
         """(K,) int32 indices of joints given by names or indices; see :meth:`index`."""
+        if isinstance(joints, str):
+            raise TypeError(f"several joints are asked for: put '{joints}' into a list")
         return np.array([self.index(joint) for joint in joints], np.int32)
 
     @cached_property

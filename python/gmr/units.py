@@ -29,12 +29,15 @@ UNITS = {
 }
 """Metres per unit; "cmu" is what the CMU mocap database counts in (ASF length 0.45: inches / 0.45)."""
 
+_SMALLEST, _LARGEST = 1e-9, 1e9
+"""Metres per unit beyond which no body can be meant, and the numbers of a file might overflow."""
+
 
 def metres_per_unit(unit: float | str) -> float:
     """Metres per unit of "m", "cm", "mm", "in", "ft", "dm" or "cmu", or of a number of metres.
 
     Raises:
-        GmrError: the unit is none of these, or not above 0.
+        GmrError: the unit is none of these, or not from 1e-9 to 1e9.
     """
     if isinstance(unit, str):
         if unit.lower() in UNITS:
@@ -44,8 +47,8 @@ def metres_per_unit(unit: float | str) -> float:
         except ValueError:
             known = ", ".join(UNITS)
             raise GmrError(f"there is no unit '{unit}'; use one of {known}, or metres per unit") from None
-    if not 0 < unit < float("inf"):
-        raise GmrError(f"a unit cannot be {unit} metres; give more than 0")
+    if not _SMALLEST <= unit <= _LARGEST:
+        raise GmrError(f"a unit cannot be {unit:g} metres; give from {_SMALLEST:g} to {_LARGEST:g}")
     return float(unit)
 
 

@@ -11,6 +11,7 @@ from numpy.typing import DTypeLike, NDArray
 from gmr import _core
 from gmr.errors import GmrError
 from gmr.frames import Rows
+from gmr.threads import thread_count
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
@@ -62,9 +63,8 @@ def _forward_kinematics(
 ) -> None:
     """Runs the kernel that fits what the motion holds: Euler rows as read, or quaternions."""
     skeleton, source = motion.skeleton, motion.source
-    if threads is None:
-        threads = 0 if motion.frame_count * skeleton.joint_count > _THREADING_PAYS else 1
-    wanted = (joints, slots, positions, rotations, threads)
+    by_default = 0 if motion.frame_count * skeleton.joint_count > _THREADING_PAYS else 1
+    wanted = (joints, slots, positions, rotations, thread_count(threads, by_default))
     if isinstance(source, Rows):
         layout = source.layout
         _core.forward_kinematics_euler(
@@ -81,7 +81,10 @@ def _forward_kinematics(
 
 
 def _float_type(dtype: DTypeLike | None) -> np.dtype[Any]:
-    found = np.dtype(np.float32 if dtype is None else dtype)
+    try:
+        found = np.dtype(np.float32 if dtype is None else dtype)
+    except TypeError as error:
+        raise GmrError(f"positions and rotations come as float32 or float64, not {dtype!r}") from error
     if found not in (np.dtype(np.float32), np.dtype(np.float64)):
         raise GmrError(f"positions and rotations come as float32 or float64, not {found}")
     return found
@@ -89,6 +92,8 @@ def _float_type(dtype: DTypeLike | None) -> np.dtype[Any]:
 
 def _check_out(out: FloatArray, shape: tuple[int, ...], dtype: DTypeLike | None) -> None:
     """Raises unless ``out`` can be written into as asked."""
+    if not isinstance(out, np.ndarray):
+        raise TypeError(f"out must be an array to write into, not {out!r:.60}")
     wanted = _float_type(out.dtype if dtype is None else dtype)
     if out.shape != shape or out.dtype != wanted or not out.flags.c_contiguous or not out.flags.writeable:
         raise GmrError(

@@ -107,11 +107,11 @@ fn forward_kinematics<'py>(
     py: Python<'py>,
     topology: Py<PyTopology>,
     rotations: &Bound<'py, PyAny>,
-    translated: PyReadonlyArray1<'py, i32>,
+    #[pyo3(from_py_with = indices)] translated: Vec<i32>,
     translations: &Bound<'py, PyAny>,
-    offsets: &Bound<'py, PyAny>,
-    joints: Option<PyReadonlyArray1<'py, i32>>,
-    rotation_slots: Option<PyReadonlyArray1<'py, i32>>,
+    #[pyo3(from_py_with = widened)] offsets: Vec<f64>,
+    #[pyo3(from_py_with = any_indices)] joints: Option<Vec<i32>>,
+    #[pyo3(from_py_with = any_indices)] rotation_slots: Option<Vec<i32>>,
     positions_out: Option<Bound<'py, PyAny>>,
     rotations_out: Option<Bound<'py, PyAny>>,
     threads: usize,
@@ -119,10 +119,10 @@ fn forward_kinematics<'py>(
 ) -> PyResult<()> {
     let shared = Shared {
         topology,
-        translated: to_vec(&translated),
-        offsets: widened(offsets)?,
-        joints: joints.as_ref().map(to_vec),
-        rotation_slots: rotation_slots.as_ref().map(to_vec),
+        translated,
+        offsets,
+        joints,
+        rotation_slots,
         positions_out,
         rotations_out,
         threads,
@@ -164,22 +164,22 @@ fn forward_kinematics_euler<'py>(
     rows: PyReadonlyArray2<'py, f64>,
     rotation_columns: PyReadonlyArray2<'py, i32>,
     rotation_axes: PyReadonlyArray2<'py, u8>,
-    translated: PyReadonlyArray1<'py, i32>,
+    #[pyo3(from_py_with = indices)] translated: Vec<i32>,
     translation_columns: PyReadonlyArray2<'py, i32>,
     adds_offset: bool,
-    offsets: &Bound<'py, PyAny>,
-    joints: Option<PyReadonlyArray1<'py, i32>>,
-    rotation_slots: Option<PyReadonlyArray1<'py, i32>>,
+    #[pyo3(from_py_with = widened)] offsets: Vec<f64>,
+    #[pyo3(from_py_with = any_indices)] joints: Option<Vec<i32>>,
+    #[pyo3(from_py_with = any_indices)] rotation_slots: Option<Vec<i32>>,
     positions_out: Option<Bound<'py, PyAny>>,
     rotations_out: Option<Bound<'py, PyAny>>,
     threads: usize,
 ) -> PyResult<()> {
     let shared = Shared {
         topology,
-        translated: to_vec(&translated),
-        offsets: widened(offsets)?,
-        joints: joints.as_ref().map(to_vec),
-        rotation_slots: rotation_slots.as_ref().map(to_vec),
+        translated,
+        offsets,
+        joints,
+        rotation_slots,
         positions_out,
         rotations_out,
         threads,
@@ -208,6 +208,15 @@ pub(crate) fn value_error(error: impl std::fmt::Display) -> PyErr {
 
 pub(crate) fn to_vec<T: Element + Copy>(array: &PyReadonlyArray1<'_, T>) -> Vec<T> {
     array.as_array().iter().copied().collect()
+}
+
+fn indices(array: &Bound<'_, PyAny>) -> PyResult<Vec<i32>> {
+    Ok(to_vec(&array.extract::<PyReadonlyArray1<'_, i32>>()?))
+}
+
+/// [`indices`], where there are any.
+fn any_indices(array: &Bound<'_, PyAny>) -> PyResult<Option<Vec<i32>>> {
+    if array.is_none() { Ok(None) } else { indices(array).map(Some) }
 }
 
 /// The numbers of an array of either width.

@@ -89,10 +89,13 @@ def _given(skeleton: Skeleton, names: Mapping[str, str | int]) -> dict[str, int]
     unknown = [role for role in names if role not in ROLES]
     if unknown:
         raise DatasetError(f"no role is called '{unknown[0]}'; the roles are {', '.join(ROLES)}")
-    try:
-        return {role: skeleton.index(joint) for role, joint in names.items()}
-    except SkeletonError as error:
-        raise DatasetError(f"names={dict(names)!r}: {error}") from error
+    found = {}
+    for role, joint in names.items():
+        try:
+            found[role] = skeleton.index(joint)
+        except SkeletonError as error:
+            raise DatasetError(f"{role}={joint}: {error}") from error
+    return found
 
 
 def _missing(missing: list[str]) -> str:
@@ -108,8 +111,8 @@ def _fault(skeleton: Skeleton, poses: Poses, roles: Mapping[str, int]) -> str | 
 def _remedy(skeleton: Skeleton) -> str:
     joints = quoted([name for name in _proper(skeleton) if name], 80)
     return (
-        f"The joints are {joints}. Name those of a body, for example "
-        "names={'hips': ..., 'left_up_leg': ..., 'right_up_leg': ..., 'left_foot': ..., 'right_foot': ...}"
+        f"The joints are {joints}. Say which are hips, left_up_leg, right_up_leg, left_foot and right_foot: "
+        "names={'hips': ..., ...} in Python, --name hips=... on the command line."
     )
 
 

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 import warnings
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TextIO, TypeVar, cast
 
 import click
 
 from gmr.errors import FormatWarning, GmrError
+from gmr.unbuffered import Whole
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
@@ -28,6 +30,8 @@ INTERRUPTED = 130
 def finished(command: click.Command, args: list[str] | None = None) -> int:
     """Runs a command and tells its exit code; every expected trouble is one sentence on stderr."""
     _open_closed_streams()
+    given = sys.stdout
+    sys.stdout = _with_whole_writes(given)
     try:
         code = command.main(args, standalone_mode=False)
         sys.stdout.flush()
@@ -38,8 +42,7 @@ def finished(command: click.Command, args: list[str] | None = None) -> int:
         say("interrupted; no file was left half-written")
         return INTERRUPTED
     except BrokenPipeError:
-        # The reader has gone; without this Python complains once more while it shuts down.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _forget_output()
         return 1
     except GmrError as error:
         say(str(error))
@@ -52,10 +55,14 @@ def finished(command: click.Command, args: list[str] | None = None) -> int:
         return 1
     except OSError as error:
         say(f"{error.filename or 'standard output'}: {error.strerror}")
+        if error.filename is None:
+            _forget_output()
         return 1
     except MemoryError:
         say("this does not fit into the memory of this machine; give less at a time")
         return 1
+    finally:
+        sys.stdout = given
     return code if isinstance(code, int) else 0
 
 
@@ -64,6 +71,20 @@ def _open_closed_streams() -> None:
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, Path(os.devnull).open(mode))  # noqa: SIM115  (open as long as the program)
+
+
+def _forget_output() -> None:
+    """What standard output did not take goes nowhere; Python would try, and complain, while it shuts down."""
+    with suppress(OSError):  # a stream without a file behind it
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _with_whole_writes(stream: TextIO) -> TextIO:
+    """The stream; where Python runs unbuffered, one that does not lose the end of a text unnoticed."""
+    raw = getattr(stream, "buffer", None)
+    if not isinstance(raw, io.RawIOBase):
+        return stream
+    return io.TextIOWrapper(cast(Any, Whole(raw)), stream.encoding, stream.errors, write_through=True)
 
 
 def say(sentence: str) -> None:

@@ -110,9 +110,16 @@ def convert(
 
 def _jobs(source: str, target: str) -> list[tuple[Path | str, Path | str]]:
     """Each input with the place that it goes to."""
+    from gmr.formats.registry import suffixes
+
     if source != STDIO and Path(source).is_dir():
         if target == STDIO or Path(target).is_file():
             raise click.UsageError(f"'{source}' is a folder, so OUT must be a folder too, not '{target}'")
+        if not Path(target).exists() and Path(target).suffix.lower() in suffixes():
+            raise click.UsageError(
+                f"'{source}' is a folder, so OUT must be a folder too, but '{target}' is called like a file; "
+                "give a name without the suffix"
+            )
         return [(path, Path(target, Path(path).relative_to(source))) for path in files_of(source)]
     if target != STDIO and Path(target).is_dir():
         if source == STDIO:

@@ -27,7 +27,6 @@ def demo(context: click.Context, out: Path) -> None:
     folder = demo_folder()
     click.echo(f"Evaluating the {len(list(folder.glob('*.bvh')))} clips of real people that ship with gmr,")
     click.echo("and their mirrored copies, as a motion-matching dataset.\n")
-    out.parent.mkdir(parents=True, exist_ok=True)
     context.invoke(evaluate, folder=folder, out=out, mirror=True, names={})
     click.echo(f"\n{CREDIT}")
     click.echo("\nNext: gmr evaluate FOLDER, with a folder of your own BVH files.")

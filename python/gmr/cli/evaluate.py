@@ -16,6 +16,7 @@ import click
 from gmr.cli.common import Unit, say
 from gmr.cli.progress import Phases
 from gmr.errors import GmrError
+from gmr.listing import listed
 
 if TYPE_CHECKING:
     from gmr.evaluation import Evaluation
@@ -61,11 +62,13 @@ def _values(
 
 def _roles(context: click.Context, option: click.Parameter, pairs: tuple[str, ...] | None) -> dict[str, str]:
     """Joints typed as ROLE=JOINT."""
-    roles = {}
+    roles: dict[str, str] = {}
     for text in pairs or ():
         role, _, joint = text.partition("=")
         if not (role and joint):
             raise click.BadParameter(f"{text!r} is not ROLE=JOINT, as in left_foot=foot_l.")
+        if role in roles:
+            raise click.BadParameter(f"'{role}' is named twice, {roles[role]} and {joint}; say which it is.")
         roles[role] = joint
     if roles:
         from gmr.body.naming import ROLES
@@ -155,6 +158,7 @@ def evaluate(
         raise click.UsageError(f"{error}.") from error
     phases = Phases(quiet)
     with phases, _trouble_with_files(phases):
+        _check_places(None if no_report else out, tables, phases)
         found = gmr.evaluate(
             folder,
             preset=preset,
@@ -169,9 +173,32 @@ def evaluate(
         )
         written = _write(found, None if no_report else out, tables, phases)
     click.echo(_summary(found, written) if as_json else _verdict(found, written))
-    for file, why in found.failed.items():
-        say(f"left out {why if file in why else f'{file}: {why}'}")
+    for sentence in _left_out(found.failed):
+        say(sentence)
     return 1 if found.failed else 0
+
+
+def _left_out(failed: Mapping[str, str]) -> Iterator[str]:
+    """A sentence for each reason for which files were left out."""
+    files: dict[str, list[str]] = {}
+    for file, why in failed.items():
+        files.setdefault(why, []).append(file)
+    for why, alike in files.items():
+        named = len(alike) == 1 and alike[0] in why
+        yield f"left out {why}" if named else f"left out {listed(alike, 5)}: {why}"
+
+
+def _check_places(out: Path | None, tables: Path | None, phases: Phases) -> None:
+    """Learn before all the work that its results cannot be kept."""
+    from gmr.replacing import check_place
+
+    phases.current = "looking where to write"
+    if tables is not None:
+        with _naming(tables):
+            check_place(tables / "trials.csv")
+    if out is not None:
+        with _naming(out):
+            check_place(out)
 
 
 def _write(found: Evaluation, out: Path | None, tables: Path | None, phases: Phases) -> dict[str, Any]:

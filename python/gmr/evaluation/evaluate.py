@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numbers
 import os
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -31,6 +32,7 @@ from gmr.matching.database import Database, named
 from gmr.matching.prepare import unit_text
 from gmr.matching.trial import Profile, Segment, Tracking, TrialLog, run_trials
 from gmr.motion import Motion
+from gmr.threads import thread_count
 
 if TYPE_CHECKING:
     from gmr.errors import GmrError
@@ -69,7 +71,7 @@ def evaluate(
             only asked for the speed and turn rate.
         speeds: metres per second; 1 to 3 in steps of 0.25 by default.
         turn_rates_deg: degrees per second, positive to the left; -100 to 100 in steps of 25 by default.
-        threads: all cores by default; the result does not depend on it.
+        threads: how many to use, all cores by default (or 0); the result does not depend on it.
         progress: called with the name of a phase ("reading", "preparing", "simulating", "measuring"), how
             much of it is done, and of how much; what it raises ends the evaluation.
         names: joints by role where they are not found by themselves: ``{"left_foot": "foot_l"}``.
@@ -87,16 +89,17 @@ def evaluate(
     """
     if tracking not in ("time", "velocity"):
         raise ValueError(f"unknown tracking {tracking!r}; known are time, velocity")
-    if threads is not None and threads < 1:
-        raise ValueError(f"there must be at least 1 thread, not {threads}")
+    if names is not None and not isinstance(names, Mapping):
+        raise TypeError(f"names are joints by role, as in {{'left_foot': 'foot_l'}}, not {names!r:.60}")
+    thread_total = thread_count(threads)
     trials = constant_trials(
-        DEFAULT_SPEEDS if speeds is None else tuple(speeds),
-        DEFAULT_TURN_RATES_DEG if turn_rates_deg is None else tuple(turn_rates_deg),
+        DEFAULT_SPEEDS if speeds is None else _numbers("speeds", speeds),
+        DEFAULT_TURN_RATES_DEG if turn_rates_deg is None else _numbers("turn_rates_deg", turn_rates_deg),
         preset or "even",
     )
     tell = progress or _silent
     with _format_warnings() as odd:
-        dataset, motions, failed = _motions(source, threads, errors, tell)
+        dataset, motions, failed = _motions(source, thread_total, errors, tell)
     tell("preparing", 0, 1)
     database = Database.build(motions, mirror=mirror, names=names, unit=unit)
     if database.excluded and errors == "raise":
@@ -107,7 +110,7 @@ def evaluate(
         database,
         [_profile(trial) for trial in trials],
         tracking=tracking,
-        threads=threads or 0,
+        threads=thread_total,
         progress=lambda done, of: tell("simulating", done, of),
     )
     tell("measuring", 0, 1)
@@ -156,8 +159,16 @@ _COLUMNS = (
 )
 
 
+def _numbers(name: str, values: Sequence[float]) -> tuple[float, ...]:
+    """The numbers of a list of such."""
+    found = tuple(values) if isinstance(values, Iterable) else (None,)
+    if not all(isinstance(value, numbers.Real) for value in found):
+        raise TypeError(f"{name} is a list of numbers, not {values!r:.60}")
+    return found
+
+
 def _motions(
-    source: Source, threads: int | None, errors: Literal["raise", "collect"], tell: Progress
+    source: Source, threads: int, errors: Literal["raise", "collect"], tell: Progress
 ) -> tuple[str, dict[str, Motion], dict[str, str]]:
     """The dataset's name, its motions by name, and what could not be read and why."""
     if not isinstance(source, str | os.PathLike):
@@ -183,6 +194,8 @@ def _motions(
 def _no_motion(folder: str | os.PathLike[str], failed: Mapping[str, GmrError]) -> str:
     if failed:
         first = next(iter(failed.values()))
+        if len(failed) == 1:
+            return f"the only motion file of {os.fspath(folder)} could not be read: {first}"
         return (
             f"none of the {len(failed)} motion files of {os.fspath(folder)} could be read; the first: {first}"
         )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 from gmr.errors import FormatError, GmrError
 from gmr.formats.reading import Positions, read
 from gmr.formats.registry import suffixes
+from gmr.threads import thread_count
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
@@ -62,7 +63,7 @@ def read_folder(
 
     Args:
         folder: where they are; files of other kinds and hidden ones are left out.
-        threads: how many files are read at once; all cores by default. The result does not depend on it.
+        threads: how many files are read at once; 0 or None: all cores. The result does not depend on it.
         errors: "raise" the first file's error in name order, or "collect" them in ``.failed``.
         positions: see :func:`gmr.read`.
         strict: see :func:`gmr.read`.
@@ -76,8 +77,9 @@ def read_folder(
     """
     if errors not in ("raise", "collect"):
         raise ValueError(f"errors='{errors}' is not known; use 'raise' or 'collect'")
+    most = thread_count(threads) or os.cpu_count() or 1
     paths = motion_files(folder)
-    workers = max(1, min(threads or os.cpu_count() or 1, len(paths)))
+    workers = max(1, min(most, len(paths)))
     takes = Takes()
     with ThreadPoolExecutor(workers, thread_name_prefix="gmr-read") as pool:
         jobs = [pool.submit(read, Path(folder, path), positions=positions, strict=strict) for path in paths]

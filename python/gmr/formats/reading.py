@@ -59,6 +59,8 @@ def _contents(source: Source, any_suffix: bool) -> tuple[str | None, bytes]:
         if isinstance(source, str) and "\n" in source:
             raise FormatError("this is the text of a file where its path is needed; encode it: text.encode()")
         path = Path(source)
+        if not str(source):
+            raise FormatError("an empty text names no file; give a path", file="''")
         if not any_suffix and path.is_file():
             format_of_file(str(path))
         return str(path), _file_contents(path)

@@ -83,8 +83,8 @@ def format_of_file(file: str) -> Format:
             return known
     found = f"the suffix '{suffix}' is" if suffix else "a name without a suffix is"
     raise FormatError(
-        f"{found} none that gmr knows ({', '.join(suffixes())}). Rename the file, or name its format: "
-        f"format='{FORMATS[0].name.lower()}'.",
+        f"{found} none that gmr knows ({', '.join(suffixes())}). Rename the file; or name its format in "
+        f"Python (format='{FORMATS[0].name.lower()}'), or put - in its place on the command line.",
         file=file,
     )
 

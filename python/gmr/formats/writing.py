@@ -10,6 +10,7 @@ from typing import IO, TYPE_CHECKING, cast
 from gmr.errors import GmrError
 from gmr.formats.registry import FORMATS, Format, format_of_file, named_format
 from gmr.replacing import replacing
+from gmr.unbuffered import write_all
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
@@ -35,29 +36,43 @@ def write(motion: Motion, target: Target, format: str | None = None) -> None:
         FormatError: no format has that suffix.
         SkeletonError: the format cannot hold this motion.
     """
+    from gmr.motion import Motion
+
+    if not isinstance(motion, Motion):
+        raise TypeError(f"a motion is written, not {motion!r:.60}")
     if isinstance(target, str | os.PathLike):
         path = Path(target)
+        if os.path.isdir(path):  # noqa: PTH112  (a folder that may not be looked into is none here)
+            raise GmrError(f"{path}: this is a folder; name a file in it")
         chosen = format_of_file(str(path)) if format is None else named_format(format)
         _write_file(motion, path, chosen)
         return
+    if not hasattr(target, "write"):
+        raise TypeError(f"a motion is written to a path or an open file, not to {target!r:.60}")
     chosen = FORMATS[0] if format is None else named_format(format)
     for piece in chosen.write(motion):
         if isinstance(target, io.TextIOBase):
             target.write(piece.decode())
         else:
-            cast(IO[bytes], target).write(piece)
+            write_all(cast(IO[bytes], target), piece)
 
 
 def _write_file(motion: Motion, path: Path, chosen: Format) -> None:
-    if not path.parent.is_dir():
-        raise GmrError(f"{path}: there is no folder '{path.parent}' to write to; make it first")
-    if path.is_dir():
-        raise GmrError(f"{path}: this is a folder; name a file in it")
     pieces = chosen.write(motion)
     try:
         with replacing(path) as (file,):
             for piece in pieces:
                 file.write(piece)
     except OSError as error:
-        kept = "the file that was there is untouched" if path.exists() else "nothing is left of it"
-        raise GmrError(f"{path}: cannot be written: {error.strerror}; {kept}") from error
+        raise GmrError(f"{path}: {_why_not(path, error)}") from error
+
+
+def _why_not(path: Path, error: OSError) -> str:
+    """Why a file could not be written; what the disk refuses to answer is answered with no."""
+    folder = path.parent
+    if isinstance(error, NotADirectoryError):
+        return f"'{folder}' is no folder; name a file in one"
+    if isinstance(error, FileNotFoundError) and not os.path.exists(folder):  # noqa: PTH110
+        return f"there is no folder '{folder}' to write to; make it first"
+    kept = "the file that was there is untouched" if os.path.exists(path) else "nothing is left of it"  # noqa: PTH110
+    return f"cannot be written: {error.strerror}; {kept}"

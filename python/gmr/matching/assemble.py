@@ -112,8 +112,10 @@ def assemble(
         except (GmrError, ValueError) as error:
             assembly.excluded[name] = str(error)
     if not assembly.clip_names:
-        reasons = "; ".join(f"'{name}': {why}" for name, why in list(assembly.excluded.items())[:5])
-        raise DatasetError(f"no clip could be used ({reasons})")
+        first, why = next(iter(assembly.excluded.items()))
+        raise DatasetError(
+            f"none of the {len(assembly.excluded)} clips could be used; the first, '{first}': {why}"
+        )
     return assembly
 
 

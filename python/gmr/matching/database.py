@@ -22,6 +22,7 @@ from gmr.matching.schema import LOCOMOTION, Schema
 from gmr.matching.survey import Survey, survey
 from gmr.motion import Motion
 from gmr.skeleton import Skeleton
+from gmr.threads import thread_count
 
 __all__ = ["Database", "Normalization"]
 
@@ -221,10 +222,15 @@ class Database:
             :attr:`clips` and :attr:`frames` translate. Where there are fewer candidates: inf and -1.
 
         Raises:
-            ValueError: a query has another number of features, or one that is not finite.
+            ValueError: a query has another number of features, or one that is not finite; or ``k`` is below
+                0 or above N.
         """
+        if not 0 <= k <= len(self):
+            raise ValueError(
+                f"{k} nearest rows cannot be found among {len(self)}; give a k from 0 to {len(self)}"
+            )
         bits = np.array([tags], np.uint32)
-        return self.core.index.search(_rows(queries, "queries"), k, bits, threads=threads)
+        return self.core.index.search(_rows(queries, "queries"), k, bits, threads=thread_count(threads))
 
     def __repr__(self) -> str:
         seconds = len(self) / self.rate

@@ -30,6 +30,8 @@ _SAMPLES = 12
 _PRINTED = 1e-4
 """Share by which a frame time may be off for being cut in print."""
 
+_APART = "Clips of another skeleton can be evaluated by themselves: give them a folder of their own."
+
 _ABOUT_GROUND = 0.1
 """Metres within which the lowest joints of a body that stands on the ground are expected."""
 
@@ -83,7 +85,8 @@ def survey(
     """
     usable, excluded = _usable({name: home(motion) for name, motion in motions.items()})
     usable, skipped, notes = _without_tposes(usable)
-    usable = _on_one_skeleton(usable, excluded)
+    usable, skeleton_notes = _on_one_skeleton(usable, excluded)
+    notes += skeleton_notes
     notes += _short_notes(usable, shortest)
     skeleton = next(iter(usable.values())).skeleton
     sampled = {name: motion[:: max(1, motion.frame_count // _SAMPLES)] for name, motion in usable.items()}
@@ -178,8 +181,13 @@ def _without_tposes(
     return {name: motion[skipped.get(name, 0) :] for name, motion in motions.items()}, skipped, [note]
 
 
-def _on_one_skeleton(motions: dict[str, Motion], excluded: dict[str, str]) -> dict[str, Motion]:
-    """The clips of the skeleton that most of the recorded time has; the others join ``excluded``.
+def _on_one_skeleton(
+    motions: dict[str, Motion], excluded: dict[str, str]
+) -> tuple[dict[str, Motion], list[str]]:
+    """The clips of the skeleton that most of the recorded time has, and a note on the others.
+
+    Skeletons are alike that have the same joints on the same parents; bones may differ in length. The others
+    join ``excluded``.
 
     Raises:
         DatasetError: no skeleton has more than half of the time.
@@ -190,7 +198,7 @@ def _on_one_skeleton(motions: dict[str, Motion], excluded: dict[str, str]) -> di
         kind = (skeleton.names, skeleton.parents.tobytes(), skeleton.slots.tobytes())
         kinds.setdefault(kind, []).append(name)
     if len(kinds) == 1:
-        return motions
+        return motions, []
     seconds = {kind: sum(motions[name].duration for name in clips) for kind, clips in kinds.items()}
     main = max(seconds, key=lambda kind: seconds[kind])
     usual = motions[kinds[main][0]].skeleton
@@ -199,22 +207,25 @@ def _on_one_skeleton(motions: dict[str, Motion], excluded: dict[str, str]) -> di
         groups = "; ".join(f"{quoted(clips, 3)}" for clips in kinds.values())
         raise DatasetError(
             f"the clips have {len(kinds)} different skeletons ({groups}), none with more than half of the "
-            "time. Evaluate the clips of one skeleton at a time."
+            f"time. {_APART}"
         )
     for name in others:
-        excluded[name] = (
-            f"its skeleton is not that of the other clips: {_difference(usual, motions[name].skeleton)}"
-        )
-    return {name: motions[name] for name in kinds[main]}
+        difference = _difference(usual, motions[name].skeleton)
+        excluded[name] = f"another skeleton than that of the clips evaluated, {difference}"
+    note = (
+        f"The clips have {len(kinds)} skeletons that differ in their joints (bones may differ in length); "
+        f"{len(kinds[main])} of {len(motions)} clips have the one of most of the time, and only these were "
+        f"evaluated. {_APART}"
+    )
+    return {name: motions[name] for name in kinds[main]}, [note]
 
 
 def _difference(usual: Skeleton, odd: Skeleton) -> str:
     lacking = [name for name in usual.names if name not in odd.names]
     added = [name for name in odd.names if name not in usual.names]
-    if lacking or added:
-        parts = [f"it lacks {quoted(lacking, 3)}"] if lacking else []
-        return " and ".join(parts + ([f"it has {quoted(added, 3)} besides"] if added else []))
-    return "the joints are in another order or hang on other parents"
+    parts = [f"without {quoted(lacking, 3)}"] if lacking else []
+    parts += [f"with {quoted(added, 3)} besides"] if added else []
+    return " and ".join(parts) or "with the joints in another order or on other parents"
 
 
 def _pooled(skeleton: Skeleton, poses: Iterable[Poses]) -> Poses:

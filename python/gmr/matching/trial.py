@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from gmr import _core
 from gmr.matching.database import Database
+from gmr.threads import thread_count
 
 __all__ = ["Profile", "Segment", "Status", "Tracking", "TrialLog", "run_trials", "trial_positions"]
 
@@ -226,7 +227,7 @@ def run_trials(
         exclude_within,
         transition_penalty,
         tags,
-        threads,
+        thread_count(threads),
         progress,
     )
     for column in columns.values():

@@ -9,8 +9,7 @@ use std::arch::x86_64::{
     _mm256_unpackhi_ps, _mm256_unpacklo_pd, _mm256_unpacklo_ps,
 };
 
-use super::pair::Pair;
-use super::{Doubles, Kernel, Lanes, check_rows};
+use super::Kernel;
 
 /// Runs a kernel of `f32`.
 ///
@@ -30,69 +29,49 @@ pub(super) unsafe fn run_f64(kernel: impl Kernel<f64>) {
     kernel.run::<F64x4>();
 }
 
-/// Eight frames.
-#[derive(Clone, Copy)]
-struct F32x8(__m256);
+register! {
+    /// Eight frames.
+    F32x8 = __m256 of 8 f32, two of F64x4 beside it;
+    add _mm256_add_ps, sub _mm256_sub_ps, mul _mm256_mul_ps, div _mm256_div_ps, sqrt _mm256_sqrt_ps,
+    splat _mm256_set1_ps, load load_f32, store store_f32, narrow narrow,
+}
 
-arithmetic!(F32x8, _mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps, _mm256_div_ps);
+register! {
+    /// Four frames.
+    F64x4 = __m256d of 4 f64;
+    add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd, sqrt _mm256_sqrt_pd,
+    splat _mm256_set1_pd, load load_f64, store store_f64, any_above any_above,
+}
 
-impl Lanes for F32x8 {
-    type Real = f32;
-    type Doubles = Pair<F64x4>;
-    const WIDTH: usize = 8;
-
-    #[inline(always)]
-    fn splat(value: f32) -> Self {
-        // SAFETY: registers exist only where `dispatch` has found the instruction set.
-        Self(unsafe { _mm256_set1_ps(value) })
+/// Four columns of eight rows.
+///
+/// # Safety
+/// The machine must have AVX2, and the rows must be readable.
+#[inline(always)]
+unsafe fn load_f32(start: *const f32, stride: usize) -> [__m256; 4] {
+    // SAFETY: the caller's.
+    unsafe {
+        let (even, odd) = (start, start.add(stride));
+        let [a, b] = [load_two(even, stride), load_two(odd, stride)];
+        let [c, d] = [load_two(even.add(2 * stride), stride), load_two(odd.add(2 * stride), stride)];
+        transpose_halves([a, b, c, d])
     }
+}
 
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: as for `splat`.
-        Self(unsafe { _mm256_sqrt_ps(self.0) })
-    }
-
-    #[inline(always)]
-    fn load_columns(source: &[f32], stride: usize) -> [Self; 4] {
-        check_rows(8, stride, source.len());
-        // SAFETY: as for `splat`; the rows lie inside `source`, as just checked.
-        unsafe {
-            let (even, odd) = (source.as_ptr(), source.as_ptr().add(stride));
-            let [a, b] = [load_two(even, stride), load_two(odd, stride)];
-            let [c, d] = [load_two(even.add(2 * stride), stride), load_two(odd.add(2 * stride), stride)];
-            let [x, y, z, w] = transpose_halves([a, b, c, d]);
-            [Self(x), Self(y), Self(z), Self(w)]
-        }
-    }
-
-    #[inline(always)]
-    fn store_columns(columns: [Self; 4], target: &mut [f32], stride: usize) {
-        check_rows(8, stride, target.len());
-        let [x, y, z, w] = columns;
-        // SAFETY: as for `splat`; the rows lie inside `target`, as just checked.
-        unsafe {
-            let [a, b, c, d] = transpose_halves([x.0, y.0, z.0, w.0]);
-            let (even, odd) = (target.as_mut_ptr(), target.as_mut_ptr().add(stride));
-            store_two(a, even, stride);
-            store_two(b, odd, stride);
-            store_two(c, even.add(2 * stride), stride);
-            store_two(d, odd.add(2 * stride), stride);
-        }
-    }
-
-    #[inline(always)]
-    fn load_doubles(source: &[f64], stride: usize) -> [Self::Doubles; 4] {
-        Pair::load_columns(source, stride)
-    }
-
-    #[inline(always)]
-    fn narrow(Pair(first, second): Self::Doubles) -> Self {
-        // SAFETY: as for `splat`.
-        unsafe {
-            let first = _mm256_castps128_ps256(_mm256_cvtpd_ps(first.0));
-            Self(_mm256_insertf128_ps::<1>(first, _mm256_cvtpd_ps(second.0)))
-        }
+/// The inverse of [`load_f32`].
+///
+/// # Safety
+/// The machine must have AVX2, and the rows must be writeable.
+#[inline(always)]
+unsafe fn store_f32(columns: [__m256; 4], start: *mut f32, stride: usize) {
+    // SAFETY: the caller's.
+    unsafe {
+        let [a, b, c, d] = transpose_halves(columns);
+        let (even, odd) = (start, start.add(stride));
+        store_two(a, even, stride);
+        store_two(b, odd, stride);
+        store_two(c, even.add(2 * stride), stride);
+        store_two(d, odd.add(2 * stride), stride);
     }
 }
 
@@ -143,65 +122,44 @@ unsafe fn transpose_halves([a, b, c, d]: [__m256; 4]) -> [__m256; 4] {
     }
 }
 
-/// Four frames.
-#[derive(Clone, Copy)]
-struct F64x4(__m256d);
-
-arithmetic!(F64x4, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd, _mm256_div_pd);
-
-impl Lanes for F64x4 {
-    type Real = f64;
-    type Doubles = Self;
-    const WIDTH: usize = 4;
-
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        // SAFETY: registers exist only where `dispatch` has found the instruction set.
-        Self(unsafe { _mm256_set1_pd(value) })
+/// # Safety
+/// The machine must have AVX2.
+#[inline(always)]
+unsafe fn narrow(first: __m256d, second: __m256d) -> __m256 {
+    // SAFETY: the caller's.
+    unsafe {
+        let first = _mm256_castps128_ps256(_mm256_cvtpd_ps(first));
+        _mm256_insertf128_ps::<1>(first, _mm256_cvtpd_ps(second))
     }
+}
 
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: as for `splat`.
-        Self(unsafe { _mm256_sqrt_pd(self.0) })
+/// Four columns of four rows.
+///
+/// # Safety
+/// The machine must have AVX2, and the rows must be readable.
+#[inline(always)]
+unsafe fn load_f64(start: *const f64, stride: usize) -> [__m256d; 4] {
+    // SAFETY: the caller's.
+    unsafe {
+        let (a, b) = (_mm256_loadu_pd(start), _mm256_loadu_pd(start.add(stride)));
+        let (c, d) = (_mm256_loadu_pd(start.add(2 * stride)), _mm256_loadu_pd(start.add(3 * stride)));
+        transpose([a, b, c, d])
     }
+}
 
-    #[inline(always)]
-    fn load_columns(source: &[f64], stride: usize) -> [Self; 4] {
-        check_rows(4, stride, source.len());
-        // SAFETY: as for `splat`; the rows lie inside `source`, as just checked.
-        unsafe {
-            let start = source.as_ptr();
-            let (a, b) = (_mm256_loadu_pd(start), _mm256_loadu_pd(start.add(stride)));
-            let (c, d) = (_mm256_loadu_pd(start.add(2 * stride)), _mm256_loadu_pd(start.add(3 * stride)));
-            let [x, y, z, w] = transpose([a, b, c, d]);
-            [Self(x), Self(y), Self(z), Self(w)]
-        }
-    }
-
-    #[inline(always)]
-    fn store_columns(columns: [Self; 4], target: &mut [f64], stride: usize) {
-        check_rows(4, stride, target.len());
-        let [x, y, z, w] = columns;
-        // SAFETY: as for `splat`; the rows lie inside `target`, as just checked.
-        unsafe {
-            let [a, b, c, d] = transpose([x.0, y.0, z.0, w.0]);
-            let start = target.as_mut_ptr();
-            _mm256_storeu_pd(start, a);
-            _mm256_storeu_pd(start.add(stride), b);
-            _mm256_storeu_pd(start.add(2 * stride), c);
-            _mm256_storeu_pd(start.add(3 * stride), d);
-        }
-    }
-
-    #[inline(always)]
-    fn load_doubles(source: &[f64], stride: usize) -> [Self; 4] {
-        Self::load_columns(source, stride)
-    }
-
-    #[inline(always)]
-    fn narrow(doubles: Self) -> Self {
-        doubles
+/// The inverse of [`load_f64`].
+///
+/// # Safety
+/// The machine must have AVX2, and the rows must be writeable.
+#[inline(always)]
+unsafe fn store_f64(columns: [__m256d; 4], start: *mut f64, stride: usize) {
+    // SAFETY: the caller's.
+    unsafe {
+        let [a, b, c, d] = transpose(columns);
+        _mm256_storeu_pd(start, a);
+        _mm256_storeu_pd(start.add(stride), b);
+        _mm256_storeu_pd(start.add(2 * stride), c);
+        _mm256_storeu_pd(start.add(3 * stride), d);
     }
 }
 
@@ -224,26 +182,10 @@ unsafe fn transpose([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
     }
 }
 
-impl Doubles for F64x4 {
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        <Self as Lanes>::splat(value)
-    }
-
-    #[inline(always)]
-    fn any_above(self, limit: f64) -> bool {
-        // SAFETY: as for `Lanes::splat`.
-        unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(self.0, _mm256_set1_pd(limit))) != 0 }
-    }
-
-    #[inline(always)]
-    fn changed(self, change: fn(&mut [f64])) -> Self {
-        let mut lanes = [0.0; 4];
-        // SAFETY: as for `Lanes::splat`; the array holds four numbers.
-        unsafe {
-            _mm256_storeu_pd(lanes.as_mut_ptr(), self.0);
-            change(&mut lanes);
-            Self(_mm256_loadu_pd(lanes.as_ptr()))
-        }
-    }
+/// # Safety
+/// The machine must have AVX2.
+#[inline(always)]
+unsafe fn any_above(lanes: __m256d, limit: __m256d) -> bool {
+    // SAFETY: the caller's.
+    unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(lanes, limit)) != 0 }
 }

@@ -5,13 +5,12 @@ use std::arch::x86_64::{
     _mm512_add_pd, _mm512_add_ps, _mm512_castpd_ps, _mm512_castpd256_pd512, _mm512_castps_pd,
     _mm512_castps128_ps512, _mm512_castps256_ps512, _mm512_cmp_pd_mask, _mm512_cvtpd_ps, _mm512_div_pd,
     _mm512_div_ps, _mm512_extractf32x4_ps, _mm512_extractf64x4_pd, _mm512_insertf32x4, _mm512_insertf32x8,
-    _mm512_insertf64x4, _mm512_loadu_pd, _mm512_mul_pd, _mm512_mul_ps, _mm512_set1_pd, _mm512_set1_ps,
-    _mm512_shuffle_f64x2, _mm512_sqrt_pd, _mm512_sqrt_ps, _mm512_storeu_pd, _mm512_sub_pd, _mm512_sub_ps,
-    _mm512_unpackhi_pd, _mm512_unpackhi_ps, _mm512_unpacklo_pd, _mm512_unpacklo_ps,
+    _mm512_insertf64x4, _mm512_mul_pd, _mm512_mul_ps, _mm512_set1_pd, _mm512_set1_ps, _mm512_shuffle_f64x2,
+    _mm512_sqrt_pd, _mm512_sqrt_ps, _mm512_sub_pd, _mm512_sub_ps, _mm512_unpackhi_pd, _mm512_unpackhi_ps,
+    _mm512_unpacklo_pd, _mm512_unpacklo_ps,
 };
 
-use super::pair::Pair;
-use super::{Doubles, Kernel, Lanes, check_rows};
+use super::Kernel;
 
 /// Runs a kernel of `f32`.
 ///
@@ -31,69 +30,49 @@ pub(super) unsafe fn run_f64(kernel: impl Kernel<f64>) {
     kernel.run::<F64x8>();
 }
 
-/// Sixteen frames.
-#[derive(Clone, Copy)]
-struct F32x16(__m512);
+register! {
+    /// Sixteen frames.
+    F32x16 = __m512 of 16 f32, two of F64x8 beside it;
+    add _mm512_add_ps, sub _mm512_sub_ps, mul _mm512_mul_ps, div _mm512_div_ps, sqrt _mm512_sqrt_ps,
+    splat _mm512_set1_ps, load load_f32, store store_f32, narrow narrow,
+}
 
-arithmetic!(F32x16, _mm512_add_ps, _mm512_sub_ps, _mm512_mul_ps, _mm512_div_ps);
+register! {
+    /// Eight frames.
+    F64x8 = __m512d of 8 f64;
+    add _mm512_add_pd, sub _mm512_sub_pd, mul _mm512_mul_pd, div _mm512_div_pd, sqrt _mm512_sqrt_pd,
+    splat _mm512_set1_pd, load load_f64, store store_f64, any_above any_above,
+}
 
-impl Lanes for F32x16 {
-    type Real = f32;
-    type Doubles = Pair<F64x8>;
-    const WIDTH: usize = 16;
-
-    #[inline(always)]
-    fn splat(value: f32) -> Self {
-        // SAFETY: registers exist only where `dispatch` has found the instruction set.
-        Self(unsafe { _mm512_set1_ps(value) })
+/// Four columns of sixteen rows.
+///
+/// # Safety
+/// The machine must have AVX-512 F and DQ, and the rows must be readable.
+#[inline(always)]
+unsafe fn load_f32(start: *const f32, stride: usize) -> [__m512; 4] {
+    // SAFETY: the caller's.
+    unsafe {
+        let (even, odd) = (start, start.add(stride));
+        let [a, b] = [load_quad(even, stride), load_quad(odd, stride)];
+        let [c, d] = [load_quad(even.add(2 * stride), stride), load_quad(odd.add(2 * stride), stride)];
+        transpose_quarters([a, b, c, d])
     }
+}
 
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: as for `splat`.
-        Self(unsafe { _mm512_sqrt_ps(self.0) })
-    }
-
-    #[inline(always)]
-    fn load_columns(source: &[f32], stride: usize) -> [Self; 4] {
-        check_rows(16, stride, source.len());
-        // SAFETY: as for `splat`; the rows lie inside `source`, as just checked.
-        unsafe {
-            let (even, odd) = (source.as_ptr(), source.as_ptr().add(stride));
-            let [a, b] = [load_quad(even, stride), load_quad(odd, stride)];
-            let [c, d] = [load_quad(even.add(2 * stride), stride), load_quad(odd.add(2 * stride), stride)];
-            let [x, y, z, w] = transpose_quarters([a, b, c, d]);
-            [Self(x), Self(y), Self(z), Self(w)]
-        }
-    }
-
-    #[inline(always)]
-    fn store_columns(columns: [Self; 4], target: &mut [f32], stride: usize) {
-        check_rows(16, stride, target.len());
-        let [x, y, z, w] = columns;
-        // SAFETY: as for `splat`; the rows lie inside `target`, as just checked.
-        unsafe {
-            let [a, b, c, d] = transpose_quarters([x.0, y.0, z.0, w.0]);
-            let (even, odd) = (target.as_mut_ptr(), target.as_mut_ptr().add(stride));
-            store_quad(a, even, stride);
-            store_quad(b, odd, stride);
-            store_quad(c, even.add(2 * stride), stride);
-            store_quad(d, odd.add(2 * stride), stride);
-        }
-    }
-
-    #[inline(always)]
-    fn load_doubles(source: &[f64], stride: usize) -> [Self::Doubles; 4] {
-        Pair::load_columns(source, stride)
-    }
-
-    #[inline(always)]
-    fn narrow(Pair(first, second): Self::Doubles) -> Self {
-        // SAFETY: as for `splat`.
-        unsafe {
-            let first = _mm512_castps256_ps512(_mm512_cvtpd_ps(first.0));
-            Self(_mm512_insertf32x8::<1>(first, _mm512_cvtpd_ps(second.0)))
-        }
+/// The inverse of [`load_f32`].
+///
+/// # Safety
+/// The machine must have AVX-512 F, and the rows must be writeable.
+#[inline(always)]
+unsafe fn store_f32(columns: [__m512; 4], start: *mut f32, stride: usize) {
+    // SAFETY: the caller's.
+    unsafe {
+        let [a, b, c, d] = transpose_quarters(columns);
+        let (even, odd) = (start, start.add(stride));
+        store_quad(a, even, stride);
+        store_quad(b, odd, stride);
+        store_quad(c, even.add(2 * stride), stride);
+        store_quad(d, odd.add(2 * stride), stride);
     }
 }
 
@@ -148,70 +127,52 @@ unsafe fn transpose_quarters([a, b, c, d]: [__m512; 4]) -> [__m512; 4] {
     }
 }
 
-/// Eight frames.
-#[derive(Clone, Copy)]
-struct F64x8(__m512d);
-
-arithmetic!(F64x8, _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd, _mm512_div_pd);
-
-impl Lanes for F64x8 {
-    type Real = f64;
-    type Doubles = Self;
-    const WIDTH: usize = 8;
-
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        // SAFETY: registers exist only where `dispatch` has found the instruction set.
-        Self(unsafe { _mm512_set1_pd(value) })
+/// # Safety
+/// The machine must have AVX-512 F and DQ.
+#[inline(always)]
+unsafe fn narrow(first: __m512d, second: __m512d) -> __m512 {
+    // SAFETY: the caller's.
+    unsafe {
+        let first = _mm512_castps256_ps512(_mm512_cvtpd_ps(first));
+        _mm512_insertf32x8::<1>(first, _mm512_cvtpd_ps(second))
     }
+}
 
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: as for `splat`.
-        Self(unsafe { _mm512_sqrt_pd(self.0) })
+/// Four columns of eight rows.
+///
+/// # Safety
+/// The machine must have AVX-512 F, and the rows must be readable.
+#[inline(always)]
+unsafe fn load_f64(start: *const f64, stride: usize) -> [__m512d; 4] {
+    // SAFETY: the caller's.
+    unsafe {
+        let (even, odd) = (start, start.add(stride));
+        let (a, b) = (load_two(even, stride), load_two(odd, stride));
+        let (c, d) = (load_two(even.add(4 * stride), stride), load_two(odd.add(4 * stride), stride));
+        let (low, high) = (_mm512_unpacklo_pd(a, b), _mm512_unpacklo_pd(c, d));
+        let (odd_low, odd_high) = (_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d));
+        [
+            _mm512_shuffle_f64x2::<0b10_00_10_00>(low, high),
+            _mm512_shuffle_f64x2::<0b10_00_10_00>(odd_low, odd_high),
+            _mm512_shuffle_f64x2::<0b11_01_11_01>(low, high),
+            _mm512_shuffle_f64x2::<0b11_01_11_01>(odd_low, odd_high),
+        ]
     }
+}
 
-    #[inline(always)]
-    fn load_columns(source: &[f64], stride: usize) -> [Self; 4] {
-        check_rows(8, stride, source.len());
-        // SAFETY: as for `splat`; the rows lie inside `source`, as just checked.
-        unsafe {
-            let (even, odd) = (source.as_ptr(), source.as_ptr().add(stride));
-            let (a, b) = (load_two(even, stride), load_two(odd, stride));
-            let (c, d) = (load_two(even.add(4 * stride), stride), load_two(odd.add(4 * stride), stride));
-            let (low, high) = (_mm512_unpacklo_pd(a, b), _mm512_unpacklo_pd(c, d));
-            let (odd_low, odd_high) = (_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d));
-            [
-                Self(_mm512_shuffle_f64x2::<0b10_00_10_00>(low, high)),
-                Self(_mm512_shuffle_f64x2::<0b10_00_10_00>(odd_low, odd_high)),
-                Self(_mm512_shuffle_f64x2::<0b11_01_11_01>(low, high)),
-                Self(_mm512_shuffle_f64x2::<0b11_01_11_01>(odd_low, odd_high)),
-            ]
-        }
-    }
-
-    #[inline(always)]
-    fn store_columns(columns: [Self; 4], target: &mut [f64], stride: usize) {
-        check_rows(8, stride, target.len());
-        let [x, y, z, w] = columns;
-        // SAFETY: as for `splat`; the rows lie inside `target`, as just checked.
-        unsafe {
-            // Pairs of numbers of the even and of the odd rows: x y, and z w.
-            let (even_xy, odd_xy) = (_mm512_unpacklo_pd(x.0, y.0), _mm512_unpackhi_pd(x.0, y.0));
-            let (even_zw, odd_zw) = (_mm512_unpacklo_pd(z.0, w.0), _mm512_unpackhi_pd(z.0, w.0));
-            store_four(even_xy, even_zw, target.as_mut_ptr(), stride);
-            store_four(odd_xy, odd_zw, target.as_mut_ptr().add(stride), stride);
-        }
-    }
-
-    #[inline(always)]
-    fn load_doubles(source: &[f64], stride: usize) -> [Self; 4] {
-        Self::load_columns(source, stride)
-    }
-
-    #[inline(always)]
-    fn narrow(doubles: Self) -> Self {
-        doubles
+/// The inverse of [`load_f64`].
+///
+/// # Safety
+/// The machine must have AVX-512 F and DQ, and the rows must be writeable.
+#[inline(always)]
+unsafe fn store_f64([x, y, z, w]: [__m512d; 4], start: *mut f64, stride: usize) {
+    // SAFETY: the caller's.
+    unsafe {
+        // Pairs of numbers of the even and of the odd rows: x y, and z w.
+        let (even_xy, odd_xy) = (_mm512_unpacklo_pd(x, y), _mm512_unpackhi_pd(x, y));
+        let (even_zw, odd_zw) = (_mm512_unpacklo_pd(z, w), _mm512_unpackhi_pd(z, w));
+        store_four(even_xy, even_zw, start, stride);
+        store_four(odd_xy, odd_zw, start.add(stride), stride);
     }
 }
 
@@ -247,26 +208,10 @@ unsafe fn store_four(xy: __m512d, zw: __m512d, start: *mut f64, stride: usize) {
     }
 }
 
-impl Doubles for F64x8 {
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        <Self as Lanes>::splat(value)
-    }
-
-    #[inline(always)]
-    fn any_above(self, limit: f64) -> bool {
-        // SAFETY: as for `Lanes::splat`.
-        unsafe { _mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.0, _mm512_set1_pd(limit)) != 0 }
-    }
-
-    #[inline(always)]
-    fn changed(self, change: fn(&mut [f64])) -> Self {
-        let mut lanes = [0.0; 8];
-        // SAFETY: as for `Lanes::splat`; the array holds eight numbers.
-        unsafe {
-            _mm512_storeu_pd(lanes.as_mut_ptr(), self.0);
-            change(&mut lanes);
-            Self(_mm512_loadu_pd(lanes.as_ptr()))
-        }
-    }
+/// # Safety
+/// The machine must have AVX-512 F.
+#[inline(always)]
+unsafe fn any_above(lanes: __m512d, limit: __m512d) -> bool {
+    // SAFETY: the caller's.
+    unsafe { _mm512_cmp_pd_mask::<_CMP_GT_OQ>(lanes, limit) != 0 }
 }
