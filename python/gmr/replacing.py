@@ -22,7 +22,8 @@ def replacing(*paths: str | os.PathLike[str]) -> Iterator[tuple[BinaryIO, ...]]:
     Any error, an interrupt or a full disk among them, leaves every place as it was. The new files are in
     the folders of the old ones, for only inside one file system is a renaming never half done. Where a link
     stands, the file that it leads to is replaced. What is no file, a device or a pipe, stays and is written
-    to as it is.
+    to as it is. A file that is replaced is not lost when the power fails either: its successor is on the disk
+    before. A new one, with nothing to lose, is not waited for.
 
     Args:
         paths: the files to write; their folders exist.
@@ -36,10 +37,11 @@ def replacing(*paths: str | os.PathLike[str]) -> Iterator[tuple[BinaryIO, ...]]:
     with contextlib.ExitStack() as stack:
         made = [stack.enter_context(_opened(path)) for path in paths]
         yield tuple(file for file, _, _ in made)
-        for file, path, _ in made:
+        for file, path, place in made:
             file.flush()
-            if path is not None:
+            if path is not None and place.exists():
                 os.fsync(file.fileno())
+            file.close()
         for _, path, place in made:
             if path is not None:
                 path.replace(place)

@@ -13,7 +13,7 @@ pub enum Isa {
     Scalar,
     /// x86-64's base line, 4 lanes.
     Sse2,
-    /// AVX2 with FMA, 8 lanes.
+    /// AVX2 with FMA and BMI, which no processor lacks that has it, 8 lanes.
     Avx2,
     /// AVX-512 F, DQ, BW and VL, 16 lanes.
     Avx512,
@@ -45,7 +45,12 @@ impl Isa {
             #[cfg(target_arch = "x86_64")]
             Self::Sse2 => true,
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
+            Self::Avx2 => {
+                is_x86_feature_detected!("avx2")
+                    && is_x86_feature_detected!("fma")
+                    && is_x86_feature_detected!("bmi1")
+                    && is_x86_feature_detected!("bmi2")
+            }
             #[cfg(target_arch = "x86_64")]
             Self::Avx512 => {
                 is_x86_feature_detected!("avx512f")

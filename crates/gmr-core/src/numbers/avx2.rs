@@ -7,20 +7,21 @@ use super::layout::{DIVISORS, GATHER, WIDTH};
 use super::parse::{self, ParseRows, RowsRead};
 use std::arch::x86_64::*;
 
-/// Reads the rows of `job`; the caller has seen that the machine has AVX2.
+/// Reads the rows of `job`; the caller has seen that the machine has AVX2, which for `Isa` includes BMI: its counts
+/// of zeros are a tenth of the work.
 pub(super) fn rows(job: &ParseRows<'_>, out: &mut [f64]) -> RowsRead {
     debug_assert!(crate::Isa::Avx2.is_available());
-    // SAFETY: `ParseRows::run_on` comes here only where AVX2 is available.
+    // SAFETY: `ParseRows::run_on` comes here only where AVX2 and BMI are available.
     unsafe { rows_avx2(job, out) }
 }
 
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,bmi1,bmi2")]
 fn rows_avx2(job: &ParseRows<'_>, out: &mut [f64]) -> RowsRead {
     parse::rows(job, out, |text, at| number(text, at))
 }
 
 /// `[-]digits[.digits]` of at most 15 bytes, at least 16 bytes before the text's end.
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,bmi1,bmi2")]
 #[inline]
 fn number(text: &[u8], at: usize) -> Option<(f64, usize)> {
     let window = text.get(at..at + WIDTH)?;
@@ -55,7 +56,7 @@ fn number(text: &[u8], at: usize) -> Option<(f64, usize)> {
 }
 
 /// The number whose 16 decimal digits are the lanes, the first lane the most significant.
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,bmi1,bmi2")]
 #[inline]
 fn whole(digits: __m128i) -> i64 {
     let pairs = _mm_maddubs_epi16(digits, _mm_set1_epi16(0x010a));
