@@ -49,7 +49,7 @@ def to_post_rotation(motion: Motion) -> Motion:
         return _needed_only(to_post_rotation(restore_dummies(motion)), motion.dropped.dummies)
     if isinstance(motion.source, Rows):
         return motion
-    pose, skeleton = motion.source, motion.skeleton
+    pose, skeleton = motion.pose, motion.skeleton
     layout = pose.layout or ChannelLayout.standard(skeleton, pose.translated)
     if layout.fits(skeleton):
         return motion if pose.layout else replace(motion, source=replace(pose, layout=layout))
