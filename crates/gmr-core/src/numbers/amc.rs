@@ -7,7 +7,7 @@
 use super::fault::Flaw;
 use super::format::{LONGEST, NotFinite, STAGE, write_value};
 use super::parse::{is_padding, line_end, may_go_on, row_start, skip_blanks};
-use super::scalar::{self, Token, is_blank, is_line_end};
+use super::scalar::{self, Token, is_line_end};
 use crate::Isa;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -169,9 +169,36 @@ struct Place {
     seen: usize,
 }
 
+/// Bytes that are compared at once.
+const WORD: usize = 16;
+
+/// A name and the blank after it, with which its lines begin; a name that is too long is looked up instead.
+struct Word {
+    bone: usize,
+    bytes: u128,
+    mask: u128,
+    length: usize,
+}
+
+impl Word {
+    fn new(bone: usize, name: &[u8]) -> Self {
+        let (mut bytes, mut mask) = ([0; WORD], [0xff; WORD]);
+        let fits = name.len() < WORD;
+        if fits {
+            bytes[..name.len()].copy_from_slice(name);
+            bytes[name.len()] = b' ';
+            mask[name.len() + 1..].fill(0);
+        }
+        // A long name leaves NUL bytes, with which no line begins.
+        Self { bone, bytes: u128::from_le_bytes(bytes), mask: u128::from_le_bytes(mask), length: name.len() }
+    }
+}
+
 struct Reader<'a> {
     job: &'a ParseFrames<'a>,
     places: Vec<Place>,
+    /// The bones as the first frame lists them.
+    words: Vec<Word>,
     by_name: HashMap<&'a [u8], usize>,
     columns: usize,
     /// Bones that have values.
@@ -199,6 +226,7 @@ impl<'a> Reader<'a> {
             columns,
             valued: places.iter().filter(|place| place.count > 0).count(),
             places,
+            words: Vec::new(),
             read: FramesRead::default(),
             number: 0,
             named_before: 0,
@@ -261,6 +289,7 @@ impl<'a> Reader<'a> {
             }
             if self.read.frames == 1 {
                 self.read.listed.push(bone);
+                self.words.push(Word::new(bone, self.job.bones[bone].name));
             }
         }
     }
@@ -324,12 +353,9 @@ impl<'a> Reader<'a> {
     /// The bone that the first frame has in this place, where the line at `at` names it, and the byte after its name.
     #[inline(always)]
     fn expected(&self, step: usize, at: usize) -> Option<(usize, usize)> {
-        let bone = *self.read.listed.get(step)?;
-        let name = self.job.bones[bone].name;
-        let after = at + name.len();
-        let text = self.job.text;
-        let is_named = text[at..].starts_with(name) && text.get(after).is_some_and(|&byte| is_blank(byte));
-        is_named.then_some((bone, after))
+        let word = self.words.get(step)?;
+        let window = self.job.text.get(at..at + WORD)?.first_chunk()?;
+        (u128::from_le_bytes(*window) & word.mask == word.bytes).then_some((word.bone, at + word.length))
     }
 
     /// The bone that the line at `at` names, `None` where it is the next frame's number, else its first token.
