@@ -223,8 +223,8 @@ def parse_frames(
 
     Returns:
         The rows, (F, columns), a bone that a frame leaves out at its values before; the first frame's number;
-        the bones as the first frame lists them; how many frames' numbers do not follow the one before, and the
-        first frame and its byte; the same for frames that leave bones out; the first bone that is left out;
+        the bones as the first frame lists them; how many frames' numbers do not follow the one before, and
+        the first frame and its byte; the same for frames that leave bones out; the first bone left out;
         what ended the reading early, if anything: "not a number", "overflow", "row too short",
         "row too long", "cut", "unknown bone", "bone twice", "no number" or "too sparse", its frame, bone and
         value from 0, the bytes from and to which the token reaches.

@@ -1,10 +1,10 @@
 """What an ASF file says of a skeleton: bones with axes, degrees of freedom and limits.
 
-A bone runs from the end of the bone above it along ``direction`` for ``length``. Its degrees of freedom turn it
-about axes of its own: with ``C`` the rotation that ``axis`` tells, ``A`` that of the frame's angles and ``t`` the
-bone's vector at rest, its end is ``M = M_parent C A C^-1 T(t)``. That is the pre-rotation form, every bone with a
-slot of its own; the joints are the root and each bone's end. Angles are listed in the order in which they are
-applied: ``rx ry rz`` is ``A = Rz Ry Rx``.
+A bone runs from the end of the bone above it along ``direction`` for ``length``. Its degrees of freedom turn
+it about axes of its own: with ``C`` the rotation that ``axis`` tells, ``A`` that of the frame's angles and
+``t`` the bone's vector at rest, its end is ``M = M_parent C A C^-1 T(t)``. That is the pre-rotation form, every
+bone with a slot of its own; the joints are the root and each bone's end. Angles are listed in the order in
+which they are applied: ``rx ry rz`` is ``A = Rz Ry Rx``.
 Source: the Acclaim ASF/AMC format as M. Schafer described it (its ``L = C^-1 M C B`` is for row vectors);
 compared with the same takes as BVH.
 """
@@ -113,17 +113,18 @@ class Acclaim:
 
     @property
     def unit(self) -> float | None:
-        """Metres per file unit; None where ``length`` is 1, which is what files say that were never scaled."""
+        """Metres per file unit; None where ``length`` is 1, as in files whose writer never thought of it."""
         return None if self.length == 1 else INCH / self.length
 
     @property
     def limits(self) -> Mapping[str, Mapping[str, Limits]]:
-        """Least and greatest angle in the file's angles by bone and degree of freedom: ``limits["lfemur"]["rx"]``."""
+        """Least and greatest value by bone and degree of freedom: ``limits["lfemur"]["rx"]``, in the file's
+        angles."""
         return {bone.name: dict(zip(bone.dofs, bone.limits, strict=True)) for bone in self.bones}
 
     @cached_property
     def skeleton(self) -> Skeleton:
-        """The joints: the root turns with slot 0, each bone that has degrees of freedom with a slot of its own."""
+        """The joints; the root turns with slot 0, a bone with degrees of freedom with a slot of its own."""
         count = len(self.bones) + 1
         offsets = np.zeros((count, 3))
         for k, bone in enumerate(self.bones):

@@ -27,7 +27,7 @@ class DofRows:
         radians: the angles are radians, else degrees.
         listed: the joints as a frame of the file lists them; those left out follow in the skeleton's order.
         first: the number of the first frame.
-        states_rate: whether the file says how many frames there are in a second.
+        rate_known: whether somebody said how many frames there are in a second.
         notes: the comments at the beginning of the file.
     """
 
@@ -36,7 +36,7 @@ class DofRows:
     radians: bool = False
     listed: tuple[int, ...] = ()
     first: int = 1
-    states_rate: bool = False
+    rate_known: bool = False
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -72,9 +72,11 @@ class DofRows:
 
     @property
     def pose(self) -> Pose:
-        """Rotations and translations; the angles become quaternions in the core, about the bones' own axes."""
+        """Rotations and translations; the core makes quaternions of the angles, about the bones' own axes."""
         acclaim = self.acclaim
-        values = np.where(acclaim.turns, np.degrees(self.values), self.values) if self.radians else self.values
+        values = (
+            np.where(acclaim.turns, np.degrees(self.values), self.values) if self.radians else self.values
+        )
         rotations = np.empty((len(self), len(acclaim.slot_joints), 4))
         if acclaim.column_count:
             _core.turned_euler_to_quaternions(
@@ -89,7 +91,7 @@ class DofRows:
         return Pose(read_only(rotations), _ROOT, read_only(translations), acclaim=acclaim)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        rest = (self.acclaim, self.radians, self.listed, self.first, self.states_rate, self.notes)
+        rest = (self.acclaim, self.radians, self.listed, self.first, self.rate_known, self.notes)
         return _owned, (self.values, *rest)
 
 

@@ -36,10 +36,10 @@ _SHOWN: Final = 4
 def dof_rows_of(motion: Motion) -> DofRows:
     """The motion as an AMC file writes it; every joint keeps its place.
 
-    What was read of an AMC is as it was read. A pose on the skeleton of an ASF keeps its axes, degrees of freedom
-    and limits; a bone that turns as its degrees of freedom cannot say is given three, without limits. Any other
-    motion gets a bone for each joint but the root, with axes along the world's and three degrees of freedom:
-    each bone turns as its slot does, and the root as the slot that its children share.
+    What was read of an AMC is as it was read. A pose on the skeleton of an ASF keeps its axes, degrees of
+    freedom and limits; a bone that turns as its degrees of freedom cannot say is given three, without limits.
+    Any other motion gets a bone for each joint but the root, with axes along the world's and three degrees of
+    freedom: each bone turns as its slot does, and the root as the slot that its children share.
 
     Raises:
         SkeletonError: several roots, or another joint than the root moves.
@@ -123,7 +123,7 @@ def _anew(motion: Motion, pose: Pose) -> DofRows:
     if len(skeleton.roots) != 1:
         raise SkeletonError(
             f"an ASF has one root, this motion has {len(skeleton.roots)} "
-            f"({quoted(motion.roots, _SHOWN)}); join them first: motion.join(...), or motion.with_roots([...])"
+            f"({quoted(motion.roots, _SHOWN)}); join them first: motion.join(...) or motion.with_roots([...])"
         )
     (root,) = skeleton.roots
     offsets = skeleton.offsets.copy()
@@ -135,7 +135,9 @@ def _anew(motion: Motion, pose: Pose) -> DofRows:
     root_slot = _root_slot(skeleton, root)
     order = [root, *(joint for joint in range(skeleton.joint_count) if joint != root)]
     place = {joint: k for k, joint in enumerate(order)}
-    turning = {joint: slot for joint in order[1:] if (slot := int(skeleton.slots[joint])) not in (-1, root_slot)}
+    turning = {
+        joint: slot for joint in order[1:] if (slot := int(skeleton.slots[joint])) not in (-1, root_slot)
+    }
     names = _names(skeleton, root)
     acclaim = Acclaim(
         root=Root(),
@@ -172,10 +174,11 @@ def _still(skeleton: Skeleton, joint: int, vectors: NDArray[np.float64]) -> NDAr
     if (vectors != vectors[0]).any():
         frame = int(np.flatnonzero((vectors != vectors[0]).any(axis=1))[0])
         raise SkeletonError(
-            f"joint '{skeleton.names[joint]}' moves (first in frame {frame}), but in an ASF only the root does; "
-            "write another format, or leave the joint out."
+            f"joint '{skeleton.names[joint]}' moves (first in frame {frame}), but in an ASF only the root "
+            "does; write another format, or leave the joint out."
         )
-    return vectors[0]
+    still: NDArray[np.float64] = vectors[0]
+    return still
 
 
 def _names(skeleton: Skeleton, root: int) -> list[str]:

@@ -1,7 +1,8 @@
 """A motion: a clip on a skeleton, immutable.
 
-What was read is kept as read (rows of channels, or of degrees of freedom); the pose that operations work on (a quaternion
-for each rotation slot, translations of the roots and of the joints that move) is made once, when needed.
+What was read is kept as read (rows of channels, or of degrees of freedom); the pose that operations work on
+(a quaternion for each rotation slot, translations of the roots and of the joints that move) is made once,
+when needed.
 """
 
 from __future__ import annotations
@@ -358,7 +359,12 @@ def _same_frames(one: Motion, other: Motion) -> bool:
     a, b = one.source, other.source
     if isinstance(a, Rows) and isinstance(b, Rows):
         return a.layout == b.layout and np.array_equal(a.values, b.values)
-    if isinstance(a, DofRows) and isinstance(b, DofRows) and a.acclaim == b.acclaim and a.radians == b.radians:
+    if (
+        isinstance(a, DofRows)
+        and isinstance(b, DofRows)
+        and a.acclaim == b.acclaim
+        and a.radians == b.radians
+    ):
         return np.array_equal(a.values, b.values)
     return all(
         np.array_equal(getattr(one, key), getattr(other, key))

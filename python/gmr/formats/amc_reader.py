@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -49,8 +50,8 @@ def read_amc(
     Args:
         data: the file's bytes: UTF-8, or UTF-16 with a byte order mark.
         name: the file's path, for errors, for the motion, and to find the ASF beside.
-        strict: raise where a warning would do: bones missing in a frame, frame numbers that skip, a last frame
-            that is cut off, keywords that gmr does not know.
+        strict: raise where a warning would do: bones missing in a frame, frame numbers that skip, a last
+            frame that is cut off, keywords that gmr does not know.
         asf: the skeleton, as a path or the bytes of a file; None: the file beside, see
             :func:`gmr.formats.asf_finder.find_asf`.
         fps: frames a second; None: as ``:SAMPLES-PER-SECOND`` says, else 120 as in the CMU database, for the
@@ -65,8 +66,9 @@ def read_amc(
     notes = leading_comments(text)
     head = _read_head(text, acclaim.radians)
     rows, listed, first = _read_frames(text, acclaim, asf_name)
-    source = DofRows(rows, acclaim, head.radians, listed, first, head.fps is not None, notes)
-    rate = fps if fps is not None else head.fps if head.fps is not None else USUAL_FPS
+    known = fps if fps is not None else head.fps
+    source = DofRows(rows, acclaim, head.radians, listed, first, known is not None, notes)
+    rate = USUAL_FPS if known is None else known
     if not (math.isfinite(rate) and rate >= 0):
         raise FormatError(f"a motion cannot have {rate} frames a second; give fps=120 or so", file=name)
     return _motion(acclaim, source, 1 / rate if rate else 0.0, name)
@@ -132,7 +134,9 @@ def _read_frames(
     text: Text, acclaim: Acclaim, asf: str | None
 ) -> tuple[NDArray[np.float64], tuple[int, ...], int]:
     """Reads (F, C) rows, read-only; the joints as listed; the first frame's number."""
-    rows, first, listed, jumps, missing, bone, found = _core.parse_frames(text.data, text.at, *_bones(acclaim))
+    rows, first, listed, jumps, missing, bone, found = _core.parse_frames(
+        text.data, text.at, *_bones(acclaim)
+    )
     rows.flags.writeable = False
     names = acclaim.skeleton.names
     fault = _Fault(*found) if found else None
@@ -144,16 +148,18 @@ def _read_frames(
         text.odd(f"{what}; a bone keeps its last values there, and rests before its first.", at=missing[2])
     if jumps[0]:
         times = "once" if jumps[0] == 1 else f"{jumps[0]:,} times"
-        what = f"frame numbers skip or repeat {times}, here for the first time; the frames are read one by one"
+        what = (
+            f"frame numbers skip or repeat {times}, here for the first time; the frames are read one by one"
+        )
         text.odd(f"{what}, as if none were missing.", at=jumps[2])
     if fault:
-        text.odd("the file ends inside a frame, which is left out. Export it again for the rest.", at=fault.start)
+        text.odd(
+            "the file ends inside a frame, which is left out. Export it again for the rest.", at=fault.start
+        )
     return rows, tuple(listed), first
 
 
-def _failure(
-    text: Text, acclaim: Acclaim, asf: str | None, fault: _Fault
-) -> FormatError:
+def _failure(text: Text, acclaim: Acclaim, asf: str | None, fault: _Fault) -> FormatError:
     names = acclaim.skeleton.names
     token = text.data[fault.start : fault.end]
     title = "" if fault.bone is None else f"bone {named(names[fault.bone])}"
@@ -162,8 +168,10 @@ def _failure(
         what = f"the frames begin with {begins}. Write a line with the first frame's number before its bones."
         return text.failure(what, at=fault.start, expected="a frame's number")
     if fault.kind == "unknown bone":
-        where = "the ASF" if asf is None else os.path.basename(asf)
-        what = f"{shown(token)} is no bone of {where}. Give the ASF of this take (asf=...), or correct the name."
+        where = "the ASF" if asf is None else Path(asf).name
+        what = (
+            f"{shown(token)} is no bone of {where}. Give the ASF of this take (asf=...), or correct the name."
+        )
         return text.failure(what, at=fault.start)
     if fault.kind == "bone twice":
         return text.failure(f"{title} is there twice in one frame. Remove one.", at=fault.start)
@@ -179,4 +187,6 @@ def _failure(
         freedom = " ".join(channels) or "no degrees of freedom"
         what = f"{title} has {has} numbers, but the ASF gives it {count} ({freedom})"
         return text.failure(f"{what}. Correct the line, or give the ASF of this take.", at=fault.start)
-    return text.failure(f"{title}, {channels[fault.field]}: {why_no_number(token)}", at=fault.start, column=True)
+    return text.failure(
+        f"{title}, {channels[fault.field]}: {why_no_number(token)}", at=fault.start, column=True
+    )

@@ -1,4 +1,4 @@
-"""ASF and AMC, Acclaim's skeleton and motion files: the form in which the CMU database was first given away."""
+"""ASF and AMC, Acclaim's skeleton and motion files: the form in which CMU gives its database away."""
 
 from gmr.formats.amc_reader import read_amc, read_asf
 from gmr.formats.asf_amc_writer import amc_chunks, asf_chunks

@@ -52,8 +52,8 @@ def asf_chunks(motion: Motion) -> list[bytes]:
 def amc_chunks(motion: Motion) -> Iterator[bytes]:
     """The frames of a motion as an AMC file, piece by piece; its ASF is :func:`asf_chunks`.
 
-    Values that were read are written as they are, in the shortest decimals that read back bit-identical, bones in
-    the order of the file. All is checked before the first piece comes out.
+    Values that were read are written as they are, in the shortest decimals that read back bit-identical,
+    bones in the order of the file. All is checked before the first piece comes out.
 
     Raises:
         FormatError: a name or a value that AMC has no way to write; bone and frame are named.
@@ -68,14 +68,14 @@ def amc_chunks(motion: Motion) -> Iterator[bytes]:
 def _head(motion: Motion, rows: DofRows) -> bytes:
     lines = [f"#{note}" for note in rows.notes]
     lines.append(":FULLY-SPECIFIED")
-    if rows.states_rate or motion.frame_time != 1 / USUAL_FPS:
+    if rows.rate_known or motion.frame_time != 1 / USUAL_FPS:
         lines.append(f":SAMPLES-PER-SECOND {_text(_rate(motion.frame_time))}")
     lines.append(":RADIANS" if rows.radians else ":DEGREES")
     return ("\n".join(lines) + "\n").encode()
 
 
 def _rate(frame_time: float) -> float:
-    """The frames a second whose inverse is the frame time, to the bit where there is one; 0 for a time of 0."""
+    """The frames a second whose inverse is the frame time, to the bit where there is one; 0 for none."""
     if not frame_time:
         return 0.0
     rate = 1 / frame_time

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from gmr.acclaim import UNLIMITED, Bone, Limits, Root
@@ -140,8 +140,6 @@ class BoneItems:
 
 def read_root_item(text: Text, line: Line, root: Root) -> Root:
     """The root with one more line taken in."""
-    from dataclasses import replace
-
     match line.keyword:
         case "order":
             return replace(root, order=_root_order(text, line))
@@ -149,7 +147,11 @@ def read_root_item(text: Text, line: Line, root: Root) -> Root:
             return replace(root, axis_order=axis_order(text, line, line.words[1:], "the root"))
         case "position" | "orientation" as item:
             x, y, z = numbers_of(text, line, f"the root's {item}", 3)
-            return replace(root, **{item: (x, y, z)})
+            return (
+                replace(root, position=(x, y, z))
+                if item == "position"
+                else replace(root, orientation=(x, y, z))
+            )
     text.odd(f"the root has {shown(line.words[0])}, which gmr does not know; passed over.", at=line.at)
     return root
 

@@ -41,9 +41,7 @@ def serving_asf(names: Iterable[str]) -> set[str]:
     return {name for name in served if name is not None}
 
 
-def asf_contents(
-    asf: str | os.PathLike[str] | bytes | None, amc: str | None
-) -> tuple[str | None, bytes]:
+def asf_contents(asf: str | os.PathLike[str] | bytes | None, amc: str | None) -> tuple[str | None, bytes]:
     """The name and the bytes of the ASF that was given, or that is found beside ``amc``.
 
     Raises:
@@ -73,7 +71,9 @@ def _found_beside(amc: str | None) -> Path:
         return folder / name
     count = sum(map(_is_asf, beside))
     tried = [f"{stem}.asf" for stem in _stems(PurePath(amc).stem)]
-    there = "no other .asf is there" if not count else f"there are {count} others, none of them surely its own"
+    there = (
+        "no other .asf is there" if not count else f"there are {count} others, none of them surely its own"
+    )
     what = f"no skeleton beside it: looked for {' and '.join(tried)} in '{folder}', and {there}"
     raise FormatError(f"{what}. Put its .asf there, or give it as asf=...", file=amc)
 

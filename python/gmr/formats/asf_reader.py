@@ -205,7 +205,7 @@ class _Reader:
             raise self.text.failure(f"the file {what}. Check that it is a whole ASF file.", expected=":root")
         for joint, bone in enumerate(self.bones, start=1):
             if joint not in self.parents:
-                what = f"bone {named(bone.name)} has no place in the :hierarchy. Write it after its parent there."
+                what = f"bone {named(bone.name)} has no place in the :hierarchy. Write it after its parent."
                 raise self.text.failure(what)
         if circle := self.off_root():
             what = f"bone {named(self.bones[circle - 1].name)} hangs on itself through others in :hierarchy."

@@ -35,7 +35,8 @@ def motion_files(folder: str | os.PathLike[str]) -> list[str]:
     """Relative paths (with ``/``) of all files in the folder and those below that gmr can read, in name
     order.
 
-    Files that are only part of others, such as the ASF of an AMC, are left out. Hidden files and folders are left out; linked folders are followed, each once.
+    Files that are only part of others, such as the ASF of an AMC, and hidden files and folders are left out;
+    linked folders are followed, each once.
 
     Raises:
         FormatError: there is no such folder.

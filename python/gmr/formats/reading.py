@@ -37,14 +37,14 @@ def read(
         format: "bvh", "amc" or "asf"; told by the suffix of a path, and by the first bytes of anything else,
             where left out.
         positions: BVH: whether position channels "replace" a joint's OFFSET (as in Blender) or "add" to it.
-        asf: AMC: its skeleton, a path or the bytes of a file; the one beside where left out (07_01.asf or 07.asf
-            for 07_01.amc, or the only one in the folder).
+        asf: AMC: its skeleton, a path or the bytes of a file; where left out, the one beside (07_01.asf or
+            07.asf for 07_01.amc, or the only one in the folder).
         fps: AMC: frames a second, for most files do not say; 120 where they and you do not.
         strict: refuse what is read with a warning otherwise, such as fewer rows than the file declares.
 
     Returns:
-        The motion as the file has it, all joints kept; ``unit`` is None where the file names none. An ASF alone
-        is a motion without frames.
+        The motion as the file has it, all joints kept; ``unit`` is None where the file names none. An ASF
+        alone is a motion without frames.
 
     Raises:
         FormatError: the file is missing, empty or not what it claims to be; says where and how to mend it.

@@ -25,14 +25,14 @@ class Format:
     Args:
         name: as people call it.
         suffixes: of its files, in lower case.
-        begins: what its files begin with, any of these: words of text in upper case, after comments that begin
-            with ``#``, or the first bytes of a binary file.
+        begins: what its files begin with, any of these: words of text in upper case, after comments that
+            begin with ``#``, or the first bytes of a binary file.
         module: the module that knows it, imported when first needed.
         reader: its function ``(data: bytes, *, name, strict, **options) -> Motion``.
         writer: its function ``(motion) -> bytes`` or pieces of them.
         options: what the reader can be told besides ``name`` and ``strict``.
         beside: suffix and writer of a second file without which its files say nothing.
-        serving: its function ``(names) -> names``: of the files of a folder, those that are only part of others.
+        serving: its function ``(names) -> names``: of the files of a folder, those that are part of others.
     """
 
     name: str

@@ -21,6 +21,8 @@ mod avx2;
 mod neon;
 
 #[cfg(test)]
+mod amc_tests;
+#[cfg(test)]
 mod tests;
 
 pub use amc::{Bone, FormatFrames, FrameFault, FrameFlaw, FramesRead, ParseFrames, Places};
