@@ -2,9 +2,9 @@
 
 A bone runs from the end of the bone above it along ``direction`` for ``length``. Its degrees of freedom turn
 it about axes of its own: with ``C`` the rotation that ``axis`` tells, ``A`` that of the frame's angles and
-``t`` the bone's vector at rest, its end is ``M = M_parent C A C^-1 T(t)``. That is the pre-rotation form, every
-bone with a slot of its own; the joints are the root and each bone's end. Angles are listed in the order in
-which they are applied: ``rx ry rz`` is ``A = Rz Ry Rx``.
+``t`` the bone's vector at rest, its end is ``M = M_parent C A C^-1 T(t)``. That is the pre-rotation form,
+every bone with a slot of its own; the joints are the root and each bone's end. Angles are listed in the order
+in which they are applied: ``rx ry rz`` is ``A = Rz Ry Rx``.
 Source: the Acclaim ASF/AMC format as M. Schafer described it (its ``L = C^-1 M C B`` is for row vectors);
 compared with the same takes as BVH.
 """

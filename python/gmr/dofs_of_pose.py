@@ -145,6 +145,7 @@ def _anew(motion: Motion, pose: Pose) -> DofRows:
         parents=tuple(place[int(skeleton.parents[joint])] for joint in order[1:]),
         name="_".join(PurePath(motion.name or "gmr").stem.split()) or "gmr",
         length=1.0 if motion.unit is None else INCH / motion.unit,
+        documentation=("  written by gmr",),
     )
     slots = [root_slot, *turning.values()]
     rotations = np.zeros((len(pose), len(slots), 4))

@@ -69,7 +69,7 @@ def read_amc(
     known = fps if fps is not None else head.fps
     source = DofRows(rows, acclaim, head.radians, listed, first, known is not None, notes)
     rate = USUAL_FPS if known is None else known
-    if not (math.isfinite(rate) and rate >= 0):
+    if not _is_rate(rate):
         raise FormatError(f"a motion cannot have {rate} frames a second; give fps=120 or so", file=name)
     return _motion(acclaim, source, 1 / rate if rate else 0.0, name)
 
@@ -99,7 +99,8 @@ def _read_head(text: Text, radians: bool) -> _Head:
             case ":samples-per-second":
                 fps = _rate(text, line)
             case keyword if keyword.startswith(":"):
-                text.odd(f"gmr does not know the keyword {shown(line.words[0])}; passed over.", at=line.at)
+                what = f"gmr does not know the keyword {shown(line.words[0])}; passed over."
+                text.odd(what, at=line.at, kind="keyword")
             case _:
                 text.at = line.at
                 break
@@ -108,9 +109,14 @@ def _read_head(text: Text, radians: bool) -> _Head:
 
 def _rate(text: Text, line: Line) -> float:
     (fps,) = numbers_of(text, line, "':SAMPLES-PER-SECOND'", 1)
-    if fps < 0:
-        raise failure(text, line, f"there are {shown(line.words[1])} frames a second. Write 0 or more.")
+    if not _is_rate(fps):
+        raise failure(text, line, f"there are {shown(line.words[1])} frames a second. Write 120 or so.")
     return fps
+
+
+def _is_rate(fps: float) -> bool:
+    """Whether there can be so many frames a second; 0 stands for frames without duration."""
+    return fps == 0 or (math.isfinite(fps) and 0 < 1 / fps < math.inf and fps > 0)
 
 
 def _bones(acclaim: Acclaim) -> tuple[list[bytes], list[int]]:

@@ -15,12 +15,12 @@ from gmr.dof_rows import DofRows
 from gmr.dofs_of_pose import dof_rows_of
 from gmr.errors import FormatError
 from gmr.formats.amc_reader import USUAL_FPS
+from gmr.formats.asf_bone import why_no_name
 from gmr.motion import Motion
 
 __all__ = ["amc_chunks", "asf_chunks"]
 
 _CHUNK_VALUES = 1 << 18
-_RESERVED = frozenset(("root", "begin", "end"))
 
 
 def asf_chunks(motion: Motion) -> list[bytes]:
@@ -38,7 +38,8 @@ def asf_chunks(motion: Motion) -> list[bytes]:
     lines += [f":version {acclaim.version}", f":name {acclaim.name}"]
     lines += [":units", f"  mass {_text(acclaim.mass)}", f"  length {_text(_length(motion, acclaim))}"]
     lines += [f"  angle {'rad' if acclaim.radians else 'deg'}"]
-    lines += [":documentation", *(acclaim.documentation or ("  written by gmr",))]
+    if acclaim.documentation:
+        lines += [":documentation", *acclaim.documentation]
     root = acclaim.root
     lines += [":root", f"  order {' '.join(root.order)}", f"  axis {root.axis_order}"]
     lines += [f"  position {_texts(root.position)}", f"  orientation {_texts(root.orientation)}"]
@@ -85,8 +86,8 @@ def _rate(frame_time: float) -> float:
 
 def _frames(rows: DofRows, head: bytes) -> Iterator[bytes]:
     acclaim = rows.acclaim
-    count = len(acclaim.channels)
-    order = [*rows.listed, *(joint for joint in range(count) if joint not in set(rows.listed))]
+    listed = set(rows.listed)
+    order = [*rows.listed, *(joint for joint in range(len(acclaim.channels)) if joint not in listed)]
     starts = acclaim.starts
     columns = np.concatenate([np.arange(starts[joint], starts[joint + 1]) for joint in order])
     names = [acclaim.skeleton.names[joint].encode() for joint in order]
@@ -147,19 +148,14 @@ def _check_names(motion: Motion, acclaim: Acclaim) -> None:
     names = [bone.name for bone in acclaim.bones]
     counts = Counter(names)
     for name in names:
-        raw = name.encode(errors="replace")
-        if name.lower() in _RESERVED or counts[name] > 1:
-            why = "several joints share it" if counts[name] > 1 else "it means something else there"
-        elif raw.decode() != name or len(raw.split()) != 1 or raw != raw.strip() or _is_odd(name):
-            why = "a bone's name is one word without control characters or '#', and does not begin with ':'"
-        else:
-            continue
-        what = f"the joint's name {name!r:.80} cannot stand in an ASF file: {why}. Rename it."
-        raise FormatError(what, file=motion.name)
-
-
-def _is_odd(name: str) -> bool:
-    return name[0] == ":" or "#" in name or any(c < " " or c == "\x7f" for c in name)
+        why = why_no_name(name)
+        if counts[name] > 1:
+            why = "several joints share it"
+        elif name == "root":
+            why = "it is that of the root there"
+        if why is not None:
+            what = f"the joint's name {name!r:.80} cannot stand in an ASF file: {why}. Rename it."
+            raise FormatError(what, file=motion.name)
 
 
 def _check_bones(motion: Motion, acclaim: Acclaim) -> None:

@@ -11,7 +11,7 @@ from gmr.formats.lines import Line, failure, numbers_of
 from gmr.formats.numerals import number
 from gmr.formats.text import Text, named, shown
 
-__all__ = ["BoneItems", "read_root_item"]
+__all__ = ["BoneItems", "axis_order", "read_root_item", "why_no_name"]
 
 _TURNS: Final = ("rx", "ry", "rz")
 _MOVES: Final = ("tx", "ty", "tz")
@@ -19,6 +19,8 @@ _LIMIT = re.compile(r"\(\s*([^\s(),]+)[\s,]+([^\s(),]+)\s*\)")
 _INFINITE: Final = {"-inf": -float("inf"), "inf": float("inf"), "+inf": float("inf")}
 _NOTES: Final = ("bodymass", "cofmass")
 _MOST_SHOWN = 60
+_RESERVED: Final = frozenset(("begin", "end"))
+_CONTROL = re.compile(rb"[\x00-\x1f\x7f]")
 
 
 @dataclass(slots=True)
@@ -65,14 +67,17 @@ class BoneItems:
                 self.notes.append(" ".join(part.decode(errors="replace") for part in line.words))
             case _:
                 what = f"{self.title} has {shown(line.words[0])}, which gmr does not know; passed over."
-                self.text.odd(what, at=line.at)
+                self.text.odd(what, at=line.at, kind="item")
 
     def name(self, line: Line) -> str:
         """The name, which is one word."""
         if len(line.words) != 2:
             what = "has a name of several words" if line.words[2:] else "has no name after 'name'"
             raise failure(self.text, line, f"a bone {what}. Write one word.")
-        return self.text.decoded(line.words[1], "the name")
+        found = self.text.decoded(line.words[1], "the name")
+        if why := why_no_name(found):
+            raise failure(self.text, line, f"a bone is named {named(found)}, but {why}. Rename it.")
+        return found
 
     def dofs(self, line: Line) -> tuple[str, ...]:
         """The degrees of freedom, of which gmr reads rotations."""
@@ -121,7 +126,8 @@ class BoneItems:
             raise failure(self.text, self.limits_line, what, "(least greatest)")
         pairs = tuple((self.limit(low), self.limit(high)) for low, high in found)
         if not count:
-            self.text.odd(f"{self.title} has limits but no dof; they are left out.", at=self.limits_line.at)
+            what = f"{self.title} has limits but no dof; they are left out."
+            self.text.odd(what, at=self.limits_line.at, kind="limits")
             return ()
         if len(pairs) != count:
             what = f"{self.title} has {len(pairs)} limits for {count} degrees of freedom. Write one for each."
@@ -138,6 +144,17 @@ class BoneItems:
         return value
 
 
+def why_no_name(name: str) -> str | None:
+    """Why this cannot be a bone's name in an ASF, as part of a sentence; None where it can."""
+    if name.lower() in _RESERVED:
+        return "that word means something else in an ASF file"
+    raw = name.encode(errors="replace")
+    is_plain = raw.decode() == name and raw.split() == [raw] and not _CONTROL.search(raw)
+    if not is_plain or b"#" in raw or raw.startswith(b":"):
+        return "a bone's name is one word without control characters or '#', and does not begin with ':'"
+    return None
+
+
 def read_root_item(text: Text, line: Line, root: Root) -> Root:
     """The root with one more line taken in."""
     match line.keyword:
@@ -152,7 +169,8 @@ def read_root_item(text: Text, line: Line, root: Root) -> Root:
                 if item == "position"
                 else replace(root, orientation=(x, y, z))
             )
-    text.odd(f"the root has {shown(line.words[0])}, which gmr does not know; passed over.", at=line.at)
+    what = f"the root has {shown(line.words[0])}, which gmr does not know; passed over."
+    text.odd(what, at=line.at, kind="root item")
     return root
 
 

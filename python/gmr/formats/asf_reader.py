@@ -27,6 +27,9 @@ __all__ = ["parse_asf"]
 _LONGEST_SHARED = 1 << 20
 _MOST_SHARED = 64
 
+_LEAST = 1e-9
+"""File units of an inch at least, and inches of a file unit."""
+
 _shared: dict[bytes, Acclaim] = {}
 """Skeletons by the bytes of their files: the takes of a session share one."""
 
@@ -66,7 +69,10 @@ class _Reader:
     bone: BoneItems | None = None
     joints: dict[str, int] = field(default_factory=lambda: {"root": 0})
     parents: dict[int, int] = field(default_factory=dict)
+    places: dict[int, int] = field(default_factory=dict)
+    """The byte of the line that told a joint last: its bone, then its parent."""
     in_hierarchy: bool = False
+    sections: set[str] = field(default_factory=set)
 
     def read(self) -> Acclaim:
         notes = leading_comments(self.text)
@@ -94,6 +100,7 @@ class _Reader:
 
     def begin_section(self, line: Line) -> Callable[[Line], None]:
         """What takes the lines of the section that begins here."""
+        self.sections.add(line.keyword)
         match line.keyword:
             case ":version" | ":name" as keyword:
                 rest = self.text.decoded(b" ".join(line.words[1:]), f"the {keyword[1:]}")
@@ -110,7 +117,8 @@ class _Reader:
                 return self.read_bone
             case ":hierarchy":
                 return self.read_hierarchy
-        self.text.odd(f"{shown(line.words[0])} is no section that gmr knows; passed over.", at=line.at)
+        what = f"{shown(line.words[0])} is no section that gmr knows; passed over."
+        self.text.odd(what, at=line.at, kind="section")
         return lambda line: None
 
     def unexpected(self, line: Line) -> None:
@@ -124,8 +132,10 @@ class _Reader:
         match line.keyword:
             case "mass" | "length" as item:
                 (value,) = numbers_of(self.text, line, f"units, {item}", 1)
-                if item == "length" and value <= 0:
-                    what = f"units, length is {shown(line.words[1])}. Write file units per inch, above 0."
+                if item == "length" and not _LEAST <= value <= 1 / _LEAST:
+                    what = (
+                        f"units, length is {shown(line.words[1])}. Write file units per inch, such as 0.45."
+                    )
                     raise failure(self.text, line, what)
                 self.settings[item] = value
             case "angle":
@@ -136,7 +146,7 @@ class _Reader:
                 self.settings["radians"] = angle.startswith(b"rad")
             case _:
                 what = f"units have {shown(line.words[0])}, which gmr does not know; passed over."
-                self.text.odd(what, at=line.at)
+                self.text.odd(what, at=line.at, kind="unit")
 
     def read_root(self, line: Line) -> None:
         assert self.root is not None
@@ -161,8 +171,10 @@ class _Reader:
         if bone.name in self.joints:
             what = "is named root as the root is" if bone.name == "root" else "is there twice"
             raise failure(self.text, line, f"bone {named(bone.name)} {what}. Rename one.")
+        assert self.bone is not None
         self.bones.append(bone)
         self.joints[bone.name] = len(self.bones)
+        self.places[len(self.bones)] = self.bone.begun.at
         self.bone = None
 
     def read_hierarchy(self, line: Line) -> None:
@@ -181,6 +193,7 @@ class _Reader:
             if joint in self.parents:
                 raise failure(self.text, line, f"bone {named(child)} hangs on two others. Remove one.")
             self.parents[joint] = above
+            self.places[joint] = line.at
 
     def joint(self, name: str, line: Line) -> int:
         found = self.joints.get(name)
@@ -200,16 +213,18 @@ class _Reader:
         if self.bone is not None:
             what = f"the file ends inside {self.bone.title}. It may be cut off: export it again."
             raise self.text.failure(what, expected="end")
-        if self.root is None:
-            what = "has no :root" if self.bones or self.settings else "is empty"
-            raise self.text.failure(f"the file {what}. Check that it is a whole ASF file.", expected=":root")
+        for section in (":root", ":bonedata", ":hierarchy"):
+            if section not in self.sections:
+                what = f"has no {section}" if self.sections else "is empty"
+                mend = "It may be cut off: export it again."
+                raise self.text.failure(f"the file {what}. {mend}", expected=section)
         for joint, bone in enumerate(self.bones, start=1):
             if joint not in self.parents:
                 what = f"bone {named(bone.name)} has no place in the :hierarchy. Write it after its parent."
-                raise self.text.failure(what)
+                raise self.text.failure(what, at=self.places[joint])
         if circle := self.off_root():
             what = f"bone {named(self.bones[circle - 1].name)} hangs on itself through others in :hierarchy."
-            raise self.text.failure(f"{what} Hang one of them on the root.")
+            raise self.text.failure(f"{what} Hang one of them on the root.", at=self.places[circle])
 
     def off_root(self) -> int:
         """A joint that no path leads to from the root; 0 where there is none."""

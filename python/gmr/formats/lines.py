@@ -62,7 +62,7 @@ def numbers_of(text: Text, line: Line, what: str, count: int) -> list[float]:
     """
     words = line.words[1 : count + 1]
     if len(words) < count:
-        wanted = "one" if count == 1 else str(count)
+        wanted = "it" if count == 1 else f"all {count}"
         raise failure(text, line, f"{what} has {len(words)} of {count} numbers. Write {wanted}.")
     found = []
     for word in words:

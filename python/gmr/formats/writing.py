@@ -60,6 +60,8 @@ def write(motion: Motion, target: Target, format: str | None = None) -> None:
 
 def _write_file(motion: Motion, path: Path, chosen: Format) -> None:
     beside = chosen.place_beside(path)
+    if beside is not None and os.path.isdir(beside):  # noqa: PTH112
+        raise GmrError(f"{beside}: this is a folder; its place is needed for the other half of the motion")
     parts = {path: chosen.write(motion)}
     if beside is not None:
         parts[beside] = chosen.write_beside(motion)
