@@ -21,6 +21,7 @@ from gmr.quaternions import matrices
 SAME = {
     "root": "Hips", "lowerback": "Spine", "upperback": "Spine1",
     "lhipjoint": "LeftUpLeg", "lfemur": "LeftLeg", "ltibia": "LeftFoot", "lfoot": "LeftToeBase",
+    "ltoes": "LeftToeBase_end", "rtoes": "RightToeBase_end",
     "rhipjoint": "RightUpLeg", "rfemur": "RightLeg", "rtibia": "RightFoot", "rfoot": "RightToeBase",
 }  # fmt: skip
 """Joints of the ASF files of CMU by those of the BVH files made of them, which agree."""

@@ -164,6 +164,27 @@ def test_the_rate_and_the_unit_are_written(motion: Motion, frame_time: float, un
         assert found.unit == (None if unit is None else pytest.approx(unit, rel=1e-15))
 
 
+@given(st.data(), dof_motions(min_frames=1))
+def test_roots_that_were_split_off_are_joined_and_every_value_comes_back(
+    data: st.DataObject, motion: Motion
+) -> None:
+    names = motion.skeleton.names
+    chosen = data.draw(st.lists(st.sampled_from(names), min_size=1, unique=True))
+    apart = motion.with_roots(chosen)
+    assert apart.with_roots(["root"]) == motion
+    if "root" in chosen:
+        assert read_back(apart) == motion
+    else:
+        with pytest.raises(GmrError):  # the root's name is another joint's now, or several are left
+            read_back(apart)
+
+
+@pytest.mark.parametrize("root", ["Head", "LeftFoot", "Hips"])
+def test_a_tree_that_was_turned_over_begins_at_its_root(walk_path: Path, root: str) -> None:
+    turned = gmr.read(walk_path).shift_root(root)
+    assert_same_places(read_back(turned), turned)
+
+
 def test_the_root_turns_as_its_children_do_together(walk_path: Path) -> None:
     motion = gmr.read(walk_path)
     found = read_back(motion)

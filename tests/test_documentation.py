@@ -28,7 +28,7 @@ def pages_with(language: str) -> list[Path]:
 
 @pytest.fixture
 def reader_folder(tmp_path: Path) -> Path:
-    """What the documentation assumes: walk.bvh, a folder takes/ of a few clips, and 07_01.amc with its skeleton."""
+    """What the documentation assumes: walk.bvh, a folder takes/ of a few clips, 07_01.amc and 07.asf."""
     takes = tmp_path / "takes"
     takes.mkdir()
     for clip in ("02_01", "07_01", "07_12", "08_01", "09_01", "09_02"):

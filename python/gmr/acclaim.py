@@ -5,8 +5,8 @@ it about axes of its own: with ``C`` the rotation that ``axis`` tells, ``A`` tha
 ``t`` the bone's vector at rest, its end is ``M = M_parent C A C^-1 T(t)``. That is the pre-rotation form,
 every bone with a slot of its own; the joints are the root and each bone's end. Angles are listed in the order
 in which they are applied: ``rx ry rz`` is ``A = Rz Ry Rx``.
-Source: the Acclaim ASF/AMC format as M. Schafer described it (its ``L = C^-1 M C B`` is for row vectors);
-compared with the same takes as BVH.
+Source: Acclaim's description of its format, where ``L = C^-1 M C B`` is for row vectors; compared with the
+same takes as BVH.
 """
 
 from __future__ import annotations
@@ -136,7 +136,6 @@ class Acclaim:
             offsets=offsets,
             slots=np.where(turns, np.cumsum(turns) - 1, -1).astype(np.int32),
             slot_count=int(turns.sum()),
-            links=np.full(count, -1, np.int32),
             ends=np.zeros(count, np.uint8),
         )
 

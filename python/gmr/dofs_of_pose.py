@@ -17,6 +17,7 @@ from gmr.errors import SkeletonError
 from gmr.euler import fewer_angles
 from gmr.frames import Pose
 from gmr.listing import quoted
+from gmr.post_rotation import at_home
 from gmr.quaternions import conjugate, multiply
 from gmr.skeleton import End, Skeleton
 
@@ -39,11 +40,13 @@ def dof_rows_of(motion: Motion) -> DofRows:
     What was read of an AMC is as it was read. A pose on the skeleton of an ASF keeps its axes, degrees of
     freedom and limits; a bone that turns as its degrees of freedom cannot say is given three, without limits.
     Any other motion gets a bone for each joint but the root, with axes along the world's and three degrees of
-    freedom: each bone turns as its slot does, and the root as the slot that its children share.
+    freedom: each bone turns as its slot does, and the root as the slot that its children share. Roots that
+    were split off are joined first.
 
     Raises:
-        SkeletonError: several roots, or another joint than the root moves.
+        SkeletonError: several roots that cannot be joined, or another joint than the root moves.
     """
+    motion = at_home(motion)
     if isinstance(motion.source, DofRows):
         return motion.source
     pose = motion.pose
@@ -122,8 +125,8 @@ def _anew(motion: Motion, pose: Pose) -> DofRows:
     skeleton = motion.skeleton
     if len(skeleton.roots) != 1:
         raise SkeletonError(
-            f"an ASF has one root, this motion has {len(skeleton.roots)} "
-            f"({quoted(motion.roots, _SHOWN)}); join them first: motion.join(...) or motion.with_roots([...])"
+            f"an ASF has one root, this motion has {len(skeleton.roots)} that were never joined "
+            f"({quoted(motion.roots, _SHOWN)}); take one tree: motion.select([...])"
         )
     (root,) = skeleton.roots
     offsets = skeleton.offsets.copy()

@@ -71,7 +71,7 @@ class Pose:
     translated: NDArray[np.int32]
     translations: NDArray[np.float64]
     layout: ChannelLayout | None = None
-    rows: Rows | None = None
+    rows: Rows | DofRows | None = None
     acclaim: Acclaim | None = None
 
     def __post_init__(self) -> None:

@@ -119,7 +119,7 @@ def _mirrored_pose(motion: Motion, pose: Pose, pairs: Pairs) -> Motion:
         pair[pose.translated],
         read_only(pose.translations * _POINT),
         None if pose.layout is None else _mirrored_layout(pose.layout, pair),
-        None if pose.acclaim is None else pose.acclaim.mirrored(pair.tolist()),
+        acclaim=None if pose.acclaim is None else pose.acclaim.mirrored(pair.tolist()),
     )
     dropped = None if motion.dropped is None else _mirrored_record(motion.dropped, levels[1:], pairs)
     return replace(motion, skeleton=_mirrored_skeleton(skeleton, pair), source=source, dropped=dropped)

@@ -95,4 +95,4 @@ def _interpolated(pose: Pose, times: NDArray[np.float64]) -> Pose:
     layout = None if pose.layout is None else pose.layout.completed()
     rotations = np.asarray(_core.slerp_frames(pose.rotations, times))
     moves = start + weight * (end - start)
-    return Pose(read_only(rotations), pose.translated, read_only(moves), layout, pose.acclaim)
+    return Pose(read_only(rotations), pose.translated, read_only(moves), layout, acclaim=pose.acclaim)

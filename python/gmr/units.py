@@ -79,7 +79,7 @@ def _scaled(motion: Motion, factor: float) -> Motion:
     if isinstance(source, Rows):
         changed: Rows | Pose = _scaled_rows(source, factor)
     else:
-        rows = None if source.rows is None else _scaled_rows(source.rows, factor)
+        rows = _scaled_rows(source.rows, factor) if isinstance(source.rows, Rows) else None
         acclaim = None if source.acclaim is None else source.acclaim.scaled(factor)
         changed = replace(
             source, translations=read_only(source.translations * factor), rows=rows, acclaim=acclaim

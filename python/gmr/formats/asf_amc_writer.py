@@ -28,7 +28,7 @@ def asf_chunks(motion: Motion) -> list[bytes]:
 
     Raises:
         FormatError: a name or a value that ASF has no way to write.
-        SkeletonError: several roots, or another joint than the root moves.
+        SkeletonError: several roots that cannot be joined, or another joint than the root moves.
     """
     rows = dof_rows_of(motion)
     acclaim = rows.acclaim
@@ -58,7 +58,7 @@ def amc_chunks(motion: Motion) -> Iterator[bytes]:
 
     Raises:
         FormatError: a name or a value that AMC has no way to write; bone and frame are named.
-        SkeletonError: several roots, or another joint than the root moves.
+        SkeletonError: several roots that cannot be joined, or another joint than the root moves.
     """
     rows = dof_rows_of(motion)
     _check_names(motion, rows.acclaim)
