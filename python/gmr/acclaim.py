@@ -79,7 +79,7 @@ class Bone:
     axis_order: str = "XYZ"
     dofs: tuple[str, ...] = ()
     limits: tuple[Limits, ...] = ()
-    number: str | None = None
+    number: str = "0"
     notes: tuple[str, ...] = ()
 
 

@@ -144,7 +144,9 @@ def _anew(motion: Motion, pose: Pose) -> DofRows:
     names = _names(skeleton, root)
     acclaim = Acclaim(
         root=Root(),
-        bones=tuple(_bone(names[joint], offsets[joint], joint in turning) for joint in order[1:]),
+        bones=tuple(
+            _bone(names[joint], offsets[joint], joint in turning, str(place[joint])) for joint in order[1:]
+        ),
         parents=tuple(place[int(skeleton.parents[joint])] for joint in order[1:]),
         name="_".join(PurePath(motion.name or "gmr").stem.split()) or "gmr",
         length=1.0 if motion.unit is None else INCH / motion.unit,
@@ -166,11 +168,11 @@ def _root_slot(skeleton: Skeleton, root: int) -> int:
     return shared.pop() if len(shared) == 1 else -1
 
 
-def _bone(name: str, offset: NDArray[np.float64], turns: bool) -> Bone:
+def _bone(name: str, offset: NDArray[np.float64], turns: bool, number: str) -> Bone:
     length = float(np.linalg.norm(offset))
     x, y, z = (offset / length).tolist() if length else (0.0, 1.0, 0.0)
     dofs = _FREE if turns else ()
-    return Bone(name, (x, y, z), length, dofs=dofs, limits=(UNLIMITED,) * len(dofs))
+    return Bone(name, (x, y, z), length, dofs=dofs, limits=(UNLIMITED,) * len(dofs), number=number)
 
 
 def _still(skeleton: Skeleton, joint: int, vectors: NDArray[np.float64]) -> NDArray[np.float64]:

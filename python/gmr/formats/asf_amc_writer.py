@@ -44,8 +44,8 @@ def asf_chunks(motion: Motion) -> list[bytes]:
     lines += [":root", f"  order {' '.join(root.order)}", f"  axis {root.axis_order}"]
     lines += [f"  position {_texts(root.position)}", f"  orientation {_texts(root.orientation)}"]
     lines += [":bonedata"]
-    for k, bone in enumerate(acclaim.bones, start=1):
-        lines += _bone_lines(bone, k)
+    for bone in acclaim.bones:
+        lines += _bone_lines(bone)
     lines += [":hierarchy", "  begin", *_hierarchy(acclaim), "  end"]
     return [("\n".join(lines) + "\n").encode()]
 
@@ -99,10 +99,10 @@ def _frames(rows: DofRows, head: bytes) -> Iterator[bytes]:
         yield _core.format_frames(values, names, counts, rows.first + start)
 
 
-def _bone_lines(bone: Bone, place: int) -> list[str]:
+def _bone_lines(bone: Bone) -> list[str]:
     lines = [
         "  begin",
-        f"    id {bone.number or place}",
+        f"    id {bone.number}",
         f"    name {bone.name}",
         f"    direction {_texts(bone.direction)}",
         f"    length {_text(bone.length)}",

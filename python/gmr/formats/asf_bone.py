@@ -96,8 +96,8 @@ class BoneItems:
             raise failure(self.text, line, f"{self.title} has a degree of freedom twice. Remove one.")
         return tuple(found)
 
-    def finished(self, line: Line) -> Bone:
-        """The bone that ends with this line."""
+    def finished(self, line: Line, place: int) -> Bone:
+        """The bone that ends with this line, the one numbered ``place`` where it does not say otherwise."""
         for item in ("name", "direction", "length"):
             if item not in self.items:
                 raise failure(self.text, line, f"{self.title} has no {item}. Write it before its end.", item)
@@ -110,7 +110,7 @@ class BoneItems:
             axis_order=self.items.get("axis_order", "XYZ"),
             dofs=dofs,
             limits=self.pairs(len(dofs)),
-            number=self.items.get("id"),
+            number=self.items.get("id", str(place)),
             notes=tuple(self.notes),
         )
 

@@ -160,7 +160,7 @@ class _Reader:
                 raise failure(self.text, line, what, "begin")
             self.bone = BoneItems(self.text, line)
         elif word == "end":
-            self.end_bone(self.bone.finished(line), line)
+            self.end_bone(self.bone.finished(line, len(self.bones) + 1), line)
         elif word == "begin":
             what = f"{self.bone.title} has no end before the next begins. Write end there."
             raise failure(self.text, line, what, "end")
