@@ -90,3 +90,10 @@ def test_an_amc_whose_bones_hang_in_a_chain_is_written_as_bvh(tmp_path: Path) ->
     np.testing.assert_allclose(
         found.positions(dtype=np.float64)[:, :3], motion.positions(dtype=np.float64), rtol=0, atol=1e-9
     )
+
+
+def test_a_take_of_cmu_is_written_as_bvh_with_every_joint_in_place(takes: Path) -> None:
+    assert run("convert", takes / "07_01.amc", takes / "walk.bvh") == 0
+    motion, found = gmr.read(takes / "07_01.amc"), gmr.read(takes / "walk.bvh")
+    places = found.positions(dtype=np.float64, joints=motion.skeleton.names)
+    np.testing.assert_allclose(places, motion.positions(dtype=np.float64), rtol=0, atol=1e-9 * 40)
