@@ -28,12 +28,14 @@ def pages_with(language: str) -> list[Path]:
 
 @pytest.fixture
 def reader_folder(tmp_path: Path) -> Path:
-    """What the documentation assumes: a file walk.bvh and a folder takes/ of a few clips."""
+    """What the documentation assumes: walk.bvh, a folder takes/ of a few clips, 07_01.amc and 07.asf."""
     takes = tmp_path / "takes"
     takes.mkdir()
     for clip in ("02_01", "07_01", "07_12", "08_01", "09_01", "09_02"):
         shutil.copy(demo_folder() / f"{clip}.bvh", takes)
     shutil.copy(demo_folder() / "07_01.bvh", tmp_path / "walk.bvh")
+    for file in ("07.asf", "07_01.amc"):
+        shutil.copy(ROOT / "tests" / "data" / "amc" / file, tmp_path)
     return tmp_path
 
 

@@ -72,7 +72,7 @@ def choices(motion: Motion) -> list[Callable[[], Motion]]:
 def without_memory(motion: Motion) -> Motion:
     """The motion without the rows that it was read as, so that all must be computed."""
     source = motion.source
-    return motion if isinstance(source, Rows) else replace(motion, source=replace(source, rows=None))
+    return replace(motion, source=replace(source, rows=None)) if isinstance(source, Pose) else motion
 
 
 @given(walks())

@@ -202,6 +202,43 @@ def format_rows(rows: NDArray[np.float64]) -> bytes:
         ValueError: a value is not finite; its row and column are named from 0.
     """
 
+def parse_frames(
+    data: bytes, start: int, names: Sequence[bytes], counts: Sequence[int]
+) -> tuple[
+    NDArray[np.float64],
+    int,
+    list[int],
+    tuple[int, int, int],
+    tuple[int, int, int],
+    int,
+    tuple[str, int, int | None, int, int, int] | None,
+]:
+    """Frames of an AMC file: a line with a number, then a line a bone, its name and its values.
+
+    Args:
+        data: the whole text.
+        start: byte at which the first frame begins.
+        names: of the bones, all different.
+        counts: how many values each has; these are the columns, in this order.
+
+    Returns:
+        The rows, (F, columns), a bone that a frame leaves out at its values before; the first frame's number;
+        the bones as the first frame lists them; how many frames' numbers do not follow the one before, and
+        the first frame and its byte; the same for frames that leave bones out; the first bone left out;
+        what ended the reading early, if anything: "not a number", "overflow", "row too short",
+        "row too long", "cut", "unknown bone", "bone twice", "no number" or "too sparse", its frame, bone and
+        value from 0, the bytes from and to which the token reaches.
+    """
+
+def format_frames(
+    rows: NDArray[np.float64], names: Sequence[bytes], counts: Sequence[int], first: int
+) -> bytes:
+    """The lines of (F, C) C-contiguous rows as frames numbered from ``first`` on; see :func:`parse_frames`.
+
+    Raises:
+        ValueError: a value is not finite; its row and column are named from 0.
+    """
+
 # --- rotation ---
 
 _Floats = NDArray[np.float32] | NDArray[np.float64]
@@ -216,6 +253,19 @@ def euler_to_quaternions(
         columns: (S, 3) column of each angle; -1: angle 0.
         axes: (S, 3) axis of each angle in composing order (0: x, 1: y, 2: z): R = R_0 R_1 R_2.
         out: (F, S, 4) xyzw, unit; written. Their sign follows no rule: q and -q are one rotation.
+
+    Raises:
+        ValueError: when shapes do not fit, or a column or axis does not exist.
+    """
+
+def turned_euler_to_quaternions(
+    rows: NDArray[np.float64],
+    columns: NDArray[np.int32],
+    axes: NDArray[np.uint8],
+    frames: NDArray[np.float64],
+    out: NDArray[np.float64],
+) -> None:
+    """:func:`euler_to_quaternions` about axes of each slot's own: C A C^-1, with C one of ``frames`` (S, 4).
 
     Raises:
         ValueError: when shapes do not fit, or a column or axis does not exist.

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.arrays import read_only
+from gmr.dof_rows import DofRows
 from gmr.dummies import Dropped
 from gmr.errors import GmrError, SkeletonError
 from gmr.frames import Pose, Rows
@@ -66,7 +67,7 @@ def _joined_records(records: Sequence[Dropped | None]) -> Dropped | None:
     )
 
 
-def _joined(motions: Sequence[Motion]) -> Rows | Pose:
+def _joined(motions: Sequence[Motion]) -> Rows | DofRows | Pose:
     """The frames of motions that are alike."""
     first = motions[0]
     sources = [motion.source for motion in motions]
@@ -74,6 +75,11 @@ def _joined(motions: Sequence[Motion]) -> Rows | Pose:
     rows = [source.values for source in sources if isinstance(source, Rows)]
     if one_layout and len(rows) == len(sources) and first.layout is not None:
         return Rows(read_only(np.concatenate(rows)), first.layout)
+    dofs = [source for source in sources if isinstance(source, DofRows)]
+    if len(dofs) == len(sources) and all(
+        (part.acclaim, part.radians) == (dofs[0].acclaim, dofs[0].radians) for part in dofs
+    ):
+        return replace(dofs[0], values=read_only(np.concatenate([part.values for part in dofs])))
     translated = np.unique(np.concatenate([motion.translated for motion in motions]))
     return Pose(
         read_only(np.concatenate([motion.rotations for motion in motions])),

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gmr.channels import POSITIONS, ROTATIONS
+from gmr.dof_rows import DofRows
 from gmr.guesses import UnitGuess, UpGuess, guess_body
 from gmr.listing import listed
 from gmr.resample import nominal_fps
@@ -60,9 +61,9 @@ def describe(motion: Motion, warnings: Sequence[str] = ()) -> Description:
         motion: any.
         warnings: what reading it warned of; these come first among the oddities.
     """
-    skeleton, layout = motion.skeleton, motion.layout
+    skeleton = motion.skeleton
     body = guess_body(motion)
-    named = layout.names if layout else ()
+    named = _channel_names(motion)
     rest = leading_rest_frames(motion)
     return Description(
         frames=motion.frame_count,
@@ -73,7 +74,7 @@ def describe(motion: Motion, warnings: Sequence[str] = ()) -> Description:
         ends=int((skeleton.ends == End.SITE).sum()),
         roots=motion.roots,
         dummies=motion.dummies,
-        channels=layout.column_count if layout else 0,
+        channels=sum(len(channels) for channels in named),
         orders=dict(Counter(" ".join(channels) for channels in named if channels).most_common()),
         moving=tuple(skeleton.names[j] for j in motion.translated.tolist() if skeleton.parents[j] >= 0),
         unit=motion.unit,
@@ -83,6 +84,17 @@ def describe(motion: Motion, warnings: Sequence[str] = ()) -> Description:
         leading_rest_frames=rest,
         oddities=(*warnings, *_oddities(motion, rest, body.up)),
     )
+
+
+_NAMES = {"t": "position", "r": "rotation"}
+
+
+def _channel_names(motion: Motion) -> tuple[tuple[str, ...], ...]:
+    """(J,) the numbers that each joint has in a row; degrees of freedom under the names of channels."""
+    if isinstance(motion.source, DofRows):
+        joints = motion.source.acclaim.channels
+        return tuple(tuple(f"{name[1].upper()}{_NAMES[name[0]]}" for name in names) for names in joints)
+    return motion.layout.names if motion.layout else ()
 
 
 def _oddities(motion: Motion, rest: int, up: UpGuess | None) -> list[str]:
@@ -102,6 +114,8 @@ def _oddities(motion: Motion, rest: int, up: UpGuess | None) -> list[str]:
         found.append("no frames: a skeleton alone")
     elif motion.frame_count == 1:
         found.append("a single frame: a pose, not a recording")
+    if isinstance(motion.source, DofRows) and motion.frame_count and not motion.source.rate_known:
+        found.append(f"no frame rate, as in most AMC files; read as {motion.fps:.6g} frames a second")
     if motion.frame_time == 0 and motion.frame_count:
         found.append("frame time 0: the frames have no duration")
     if rest:

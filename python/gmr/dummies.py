@@ -81,7 +81,7 @@ def find_dummies(motion: Motion) -> tuple[int, ...]:
     if moving and motion.frame_count:
         source = motion.source
         translations = (
-            translations_of_rows(skeleton, source) if isinstance(source, Rows) else source.translations
+            translations_of_rows(skeleton, source) if isinstance(source, Rows) else motion.translations
         )
         lengths[motion.translated] = np.abs(translations).max(axis=(0, 2))
     zero = skeleton.forest.bones[(lengths == 0) & (skeleton.parents >= 0)]

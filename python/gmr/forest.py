@@ -164,8 +164,8 @@ def carried(motion: Motion, skeleton: Skeleton) -> Motion:
         return replace(motion, skeleton=skeleton, source=source.rows)
     rotations, translated, translations = _configured(motion, skeleton)
     kept, translations = _without_still_bones(motion, skeleton, translated, translations)
-    rows = source if isinstance(source, Rows) else source.rows
-    pose = Pose(read_only(rotations), kept, read_only(translations), source.layout, rows)
+    rows = source.rows if isinstance(source, Pose) else source
+    pose = Pose(read_only(rotations), kept, read_only(translations), source.layout, rows, motion.acclaim)
     return replace(motion, skeleton=skeleton, source=pose)
 
 

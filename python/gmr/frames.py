@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,10 @@ from gmr.arrays import frozen, read_only
 from gmr.channels import ChannelLayout
 from gmr.errors import GmrError, SkeletonError
 from gmr.skeleton import Skeleton
+
+if TYPE_CHECKING:
+    from gmr.acclaim import Acclaim
+    from gmr.dof_rows import DofRows
 
 __all__ = ["Pose", "Rows", "check_fit"]
 
@@ -60,13 +64,15 @@ class Pose:
             its parent in the frame of its own bone.
         layout: the channels that a post-rotation file would write it with, at home; None: the standard ones.
         rows: the rows that these frames were read as, at home, where they are the same motion still.
+        acclaim: the skeleton that an ASF would describe it with, at home, where it fits; None: made for it.
     """
 
     rotations: NDArray[np.float64]
     translated: NDArray[np.int32]
     translations: NDArray[np.float64]
     layout: ChannelLayout | None = None
-    rows: Rows | None = None
+    rows: Rows | DofRows | None = None
+    acclaim: Acclaim | None = None
 
     def __post_init__(self) -> None:
         translated = frozen(self.translated, np.int32)
@@ -101,10 +107,11 @@ class Pose:
         return replace(self, rotations=read_only(rotations), translations=read_only(translations), rows=rows)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _owned, (Pose, self.rotations, self.translated, self.translations, self.layout, self.rows)
+        rest = (self.layout, self.rows, self.acclaim)
+        return _owned, (Pose, self.rotations, self.translated, self.translations, *rest)
 
 
-def check_fit(skeleton: Skeleton, source: Rows | Pose) -> None:
+def check_fit(skeleton: Skeleton, source: Rows | DofRows | Pose) -> None:
     """Raises unless the frames are those of this skeleton."""
     if isinstance(source, Rows):
         if not source.layout.fits(skeleton):
@@ -112,6 +119,10 @@ def check_fit(skeleton: Skeleton, source: Rows | Pose) -> None:
                 "the channel layout is not that of the skeleton: parents or rotation slots differ. "
                 "Make both from the same parents and channels (Skeleton.post_rotation, ChannelLayout.of)."
             )
+        return
+    if not isinstance(source, Pose):
+        if skeleton != source.acclaim.skeleton:
+            raise SkeletonError("these values move another skeleton; use acclaim.skeleton, which is theirs")
         return
     slots = source.rotations.shape[1]
     if slots != skeleton.slot_count:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from gmr.arrays import read_only
 from gmr.channels import ChannelLayout
+from gmr.dof_rows import DofRows
 from gmr.dummies import Dropped
 from gmr.errors import SkeletonError
 from gmr.forest import changed_at_home
@@ -49,6 +50,8 @@ def mirror(motion: Motion, pairs: Mapping[str, str] | Iterable[tuple[str, str]] 
         return changed_at_home(motion, lambda motion: mirror(motion, stated), pair)
     if isinstance(motion.source, Rows):
         return _mirrored_rows(motion, motion.source, stated)
+    if isinstance(motion.source, DofRows):
+        return _mirrored_dofs(motion, motion.source, stated)
     return _mirrored_pose(motion, motion.source, stated)
 
 
@@ -62,6 +65,18 @@ def _exchanged(rows: Rows, exchange: _Exchange) -> Rows:
     values = rows.values.take(exchange.columns, axis=1)
     values *= exchange.signs
     return Rows(read_only(values), exchange.layout)
+
+
+def _mirrored_dofs(motion: Motion, rows: DofRows, pairs: Pairs) -> Motion:
+    """As :func:`_mirrored_rows`, and the axes that the bones turn about are mirrored with the bones."""
+    pair = pair_joints(motion.skeleton, pairs)
+    acclaim = rows.acclaim.mirrored(pair.tolist())
+    starts = rows.acclaim.starts
+    columns = np.concatenate([np.arange(starts[image], starts[image + 1]) for image in pair])
+    flipped = [name in ("tx", "ry", "rz") for names in acclaim.channels for name in names]
+    values = rows.values.take(columns, axis=1) * np.where(flipped, -1.0, 1.0)
+    source = replace(rows, values=read_only(values), acclaim=acclaim)
+    return replace(motion, skeleton=acclaim.skeleton, source=source)
 
 
 class _Exchange(NamedTuple):
@@ -104,6 +119,7 @@ def _mirrored_pose(motion: Motion, pose: Pose, pairs: Pairs) -> Motion:
         pair[pose.translated],
         read_only(pose.translations * _POINT),
         None if pose.layout is None else _mirrored_layout(pose.layout, pair),
+        acclaim=None if pose.acclaim is None else pose.acclaim.mirrored(pair.tolist()),
     )
     dropped = None if motion.dropped is None else _mirrored_record(motion.dropped, levels[1:], pairs)
     return replace(motion, skeleton=_mirrored_skeleton(skeleton, pair), source=source, dropped=dropped)

@@ -1,7 +1,8 @@
 """A motion: a clip on a skeleton, immutable.
 
-What was read is kept as read (rows of channels in degrees); the pose that operations work on (a quaternion
-for each rotation slot, translations of the roots and of the joints that move) is made once, when needed.
+What was read is kept as read (rows of channels, or of degrees of freedom); the pose that operations work on
+(a quaternion for each rotation slot, translations of the roots and of the joints that move) is made once,
+when needed.
 """
 
 from __future__ import annotations
@@ -16,12 +17,14 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from gmr.channels import ChannelLayout
+from gmr.dof_rows import DofRows
 from gmr.errors import GmrError
 from gmr.frames import Pose, Rows, check_fit
 from gmr.listing import listed
 from gmr.skeleton import ROOTS_SHOWN, Skeleton
 
 if TYPE_CHECKING:
+    from gmr.acclaim import Acclaim
     from gmr.dummies import Dropped
 
 __all__ = ["Motion"]
@@ -43,7 +46,7 @@ class Motion:
     skeleton: Skeleton
     frame_time: float
     """Seconds from a frame to the next."""
-    source: Rows | Pose
+    source: Rows | DofRows | Pose
     """The frames as they were given."""
     unit: float | None = None
     """Metres per file unit, None if unknown."""
@@ -148,6 +151,11 @@ class Motion:
         """Channels of the file it was read from, or that it is to be written with; None: not decided."""
         return self.source.layout
 
+    @property
+    def acclaim(self) -> Acclaim | None:
+        """What the ASF of its file said: bones with axes, degrees of freedom and limits; None without one."""
+        return None if isinstance(self.source, Rows) else self.source.acclaim
+
     @cached_property
     def pose(self) -> Pose:
         """The frames as rotations and translations; converted once where they were read as rows."""
@@ -155,6 +163,8 @@ class Motion:
 
         if isinstance(self.source, Pose):
             return self.source
+        if isinstance(self.source, DofRows):
+            return self.source.pose
         return pose_from_rows(self.skeleton, self.source)
 
     @property
@@ -184,7 +194,7 @@ class Motion:
 
         if isinstance(self.source, Rows):
             return self.source.values
-        return rows_from_pose(self.skeleton, self.source).values
+        return rows_from_pose(self.skeleton, self.pose).values
 
     def positions(
         self,
@@ -236,7 +246,7 @@ class Motion:
         dropped = None if self.dropped is None else self.dropped.frames(part)
         frame_time = self.frame_time * abs(step)
         cut = replace(self, source=self.source.frames(part), frame_time=frame_time, dropped=dropped)
-        if isinstance(self.source, Rows) and "pose" in self.__dict__:
+        if not isinstance(self.source, Pose) and "pose" in self.__dict__:
             cut.__dict__["pose"] = self.pose.frames(part)
         return cut
 
@@ -349,6 +359,13 @@ def _same_frames(one: Motion, other: Motion) -> bool:
     a, b = one.source, other.source
     if isinstance(a, Rows) and isinstance(b, Rows):
         return a.layout == b.layout and np.array_equal(a.values, b.values)
+    if (
+        isinstance(a, DofRows)
+        and isinstance(b, DofRows)
+        and a.acclaim == b.acclaim
+        and a.radians == b.radians
+    ):
+        return np.array_equal(a.values, b.values)
     return all(
         np.array_equal(getattr(one, key), getattr(other, key))
         for key in ("translated", "translations", "rotations")

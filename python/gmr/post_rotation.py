@@ -26,7 +26,7 @@ from gmr.skeleton import End, Skeleton
 if TYPE_CHECKING:
     from gmr.motion import Motion
 
-__all__ = ["to_post_rotation"]
+__all__ = ["at_home", "to_post_rotation"]
 
 _GONE: Final = -2
 _STILL: Final = 1e-12
@@ -44,19 +44,19 @@ def to_post_rotation(motion: Motion) -> Motion:
     Returns:
         A motion at home with a layout that fits its skeleton; the same motion where it has one already.
     """
-    motion = _at_home(motion)
+    motion = at_home(motion)
     if motion.dropped is not None:
         return _needed_only(to_post_rotation(restore_dummies(motion)), motion.dropped.dummies)
     if isinstance(motion.source, Rows):
         return motion
-    pose, skeleton = motion.source, motion.skeleton
+    pose, skeleton = motion.pose, motion.skeleton
     layout = pose.layout or ChannelLayout.standard(skeleton, pose.translated)
     if layout.fits(skeleton):
         return motion if pose.layout else replace(motion, source=replace(pose, layout=layout))
     return _in_shared_slots(motion, pose)
 
 
-def _at_home(motion: Motion) -> Motion:
+def at_home(motion: Motion) -> Motion:
     """The motion with all roots joined that were split off; a tree turned over begins at its root."""
     skeleton = motion.skeleton
     if skeleton.home is None:

@@ -94,4 +94,5 @@ def _interpolated(pose: Pose, times: NDArray[np.float64]) -> Pose:
     start, end = pose.translations[before], pose.translations[after]
     layout = None if pose.layout is None else pose.layout.completed()
     rotations = np.asarray(_core.slerp_frames(pose.rotations, times))
-    return Pose(read_only(rotations), pose.translated, read_only(start + weight * (end - start)), layout)
+    moves = start + weight * (end - start)
+    return Pose(read_only(rotations), pose.translated, read_only(moves), layout, acclaim=pose.acclaim)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gmr.arrays import read_only
+from gmr.dof_rows import DofRows
 from gmr.errors import GmrError
 from gmr.frames import Pose, Rows
 
@@ -72,17 +73,28 @@ def to_unit(motion: Motion, unit: float | str) -> Motion:
 def _scaled(motion: Motion, factor: float) -> Motion:
     """The motion with every length multiplied by ``factor``."""
     source = motion.source
+    if isinstance(source, DofRows):
+        frames = _scaled_dofs(source, factor)
+        return replace(motion, skeleton=frames.acclaim.skeleton, source=frames)
     if isinstance(source, Rows):
-        frames: Rows | Pose = _scaled_rows(source, factor)
+        changed: Rows | Pose = _scaled_rows(source, factor)
     else:
-        rows = None if source.rows is None else _scaled_rows(source.rows, factor)
-        frames = replace(source, translations=read_only(source.translations * factor), rows=rows)
+        rows = _scaled_rows(source.rows, factor) if isinstance(source.rows, Rows) else None
+        acclaim = None if source.acclaim is None else source.acclaim.scaled(factor)
+        changed = replace(
+            source, translations=read_only(source.translations * factor), rows=rows, acclaim=acclaim
+        )
     dropped = motion.dropped
     if dropped is not None:
         dropped = dropped.on(
             lambda skeleton: _scaled_offsets(skeleton, factor), lambda rows: _scaled_rows(rows, factor)
         )
-    return replace(motion, skeleton=_scaled_offsets(motion.skeleton, factor), source=frames, dropped=dropped)
+    return replace(motion, skeleton=_scaled_offsets(motion.skeleton, factor), source=changed, dropped=dropped)
+
+
+def _scaled_dofs(rows: DofRows, factor: float) -> DofRows:
+    lengths = np.where(rows.acclaim.turns, 1.0, factor)
+    return replace(rows, values=read_only(rows.values * lengths), acclaim=rows.acclaim.scaled(factor))
 
 
 def _scaled_rows(rows: Rows, factor: float) -> Rows:

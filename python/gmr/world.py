@@ -73,9 +73,10 @@ def _forward_kinematics(
         )  # fmt: skip
         return
     dtype = (positions if positions is not None else rotations).dtype  # type: ignore[union-attr]
-    turns, moves = source.single if dtype == np.float32 else (source.rotations, source.translations)
+    pose = motion.pose
+    turns, moves = pose.single if dtype == np.float32 else (pose.rotations, pose.translations)
     _core.forward_kinematics(
-        skeleton.topology, turns, source.translated, moves, skeleton.offsets.astype(dtype, copy=False),
+        skeleton.topology, turns, pose.translated, moves, skeleton.offsets.astype(dtype, copy=False),
         *wanted,
     )  # fmt: skip
 

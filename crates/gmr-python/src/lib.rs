@@ -3,6 +3,7 @@
 
 use pyo3::prelude::*;
 
+mod amc;
 mod forest;
 mod index;
 mod isa;
@@ -19,6 +20,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     isa::register(module)?;
     numbers::register(module)?;
+    amc::register(module)?;
     rotation::register(module)?;
     kinematics::register(module)?;
     forest::register(module)?;

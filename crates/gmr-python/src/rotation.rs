@@ -38,6 +38,25 @@ fn fill<T: Real + Element>(
     py.detach(|| rotation::euler_to_quaternions(rows, column_count, angles, out)).map_err(value_error)
 }
 
+/// `euler_to_quaternions` about axes of each slot's own, turned by `frames` (S, 4) float64: C A C^-1; float64.
+#[pyfunction]
+fn turned_euler_to_quaternions(
+    py: Python<'_>,
+    rows: PyReadonlyArray2<'_, f64>,
+    columns: PyReadonlyArray2<'_, i32>,
+    axes: PyReadonlyArray2<'_, u8>,
+    frames: PyReadonlyArray2<'_, f64>,
+    out: &Bound<'_, PyAny>,
+) -> PyResult<()> {
+    let (columns, axes) = (triples(&columns, "columns")?, triples(&axes, "axes")?);
+    let angles = EulerColumns { columns: &columns, axes: &axes };
+    let mut out = output::<f64>(out, "out", 4)?;
+    let (column_count, rows, out) = (rows.shape()[1], rows.as_slice()?, out.as_slice_mut()?);
+    let frames = frames.as_slice()?.as_chunks::<4>().0;
+    py.detach(|| rotation::turned_euler_to_quaternions(rows, column_count, angles, frames, out))
+        .map_err(value_error)
+}
+
 /// Angles in degrees (F, S, 3) about the axes (S, 3) of each slot, from quaternions (F, S, 4) float64; continuous from
 /// frame to frame.
 #[pyfunction]
@@ -92,6 +111,7 @@ pub(crate) fn zeros<T: Element>(py: Python<'_>, shape: [usize; 3]) -> PyResult<B
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(euler_to_quaternions, module)?)?;
+    module.add_function(wrap_pyfunction!(turned_euler_to_quaternions, module)?)?;
     module.add_function(wrap_pyfunction!(quaternions_to_euler, module)?)?;
     module.add_function(wrap_pyfunction!(slerp_frames, module)?)
 }

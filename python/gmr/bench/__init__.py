@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
-from gmr.bench import bvh_text, forward_kinematics, search, trials
+from gmr.bench import amc_text, bvh_text, forward_kinematics, search, trials
 from gmr.bench.harness import Contest, Row, one_core, run_contest
 from gmr.bench.inputs import LARGE_FRAME_COUNT
 
@@ -15,6 +15,8 @@ CLAIMS: Final[dict[str, Callable[[int], Iterator[Contest]]]] = {
     "bvh-load": bvh_text.load,
     "bvh-write": bvh_text.write,
     "bvh-folder": bvh_text.load_folder,
+    "amc-load": amc_text.load,
+    "amc-write": amc_text.write,
     "fk": forward_kinematics.positions,
     "fk-rows": forward_kinematics.positions_from_rows,
     "fk-frames": forward_kinematics.frame_cost,

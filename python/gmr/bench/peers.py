@@ -14,6 +14,7 @@ __all__ = ["DISTRIBUTIONS", "Peers", "find_peers"]
 DISTRIBUTIONS: Final = {
     "pybvh": "pybvh",
     "pymotion": "upc-pymotion",
+    "asfamcparser": "asfamc-parser",
     "scipy": "scipy",
     "faiss": "faiss-cpu",
 }

@@ -6,7 +6,7 @@ import io
 import os
 import sys
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar, cast
@@ -19,7 +19,18 @@ from gmr.unbuffered import Whole
 if TYPE_CHECKING:
     from gmr.motion import Motion
 
-__all__ = ["Failures", "Unit", "files_of", "finished", "progress", "read_input", "read_noting", "say"]
+__all__ = [
+    "Failures",
+    "Rate",
+    "Unit",
+    "files_of",
+    "finished",
+    "progress",
+    "read_input",
+    "read_noting",
+    "reading_options",
+    "say",
+]
 
 Item = TypeVar("Item")
 
@@ -107,6 +118,38 @@ class Unit(click.ParamType[float]):
             self.fail(str(error), param, ctx)
 
 
+class Rate(click.ParamType[float]):
+    """Frames a second, above 0."""
+
+    name = "FPS"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Frames a second."""
+        try:
+            rate = float(value)
+        except ValueError:
+            self.fail(f"'{value}' is no number of frames a second", param, ctx)
+        if not 0 < rate < float("inf"):
+            self.fail(f"{value} frames a second cannot be; give a rate above 0", param, ctx)
+        return rate
+
+
+def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Options of a command that reads files: ``positions``, ``asf``, ``amc_fps`` and ``strict``."""
+    options = (
+        click.option(
+            "--positions", type=click.Choice(["replace", "add"]), default="replace", show_default=True,
+            help="BVH: what position channels do to a joint's OFFSET.",
+        ),
+        click.option("--asf", type=click.Path(), help="AMC: the skeleton, where it is not beside."),
+        click.option("--amc-fps", type=Rate(), help="AMC: frames a second, where it does not say [120]."),
+        click.option("--strict", is_flag=True, help="Refuse what is otherwise read with a note."),
+    )  # fmt: skip
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
 class Failures:
     """The inputs that failed, each named on stderr as it happens."""
 
@@ -145,12 +188,17 @@ def files_of(path: str) -> list[Path | str]:
 
 
 def read_input(path: Path | str, **options: Any) -> Motion:
-    """The motion of a file, or of standard input for ``-``."""
-    from gmr.formats import read
+    """The motion of a file, or of standard input for ``-``; options that its format does not know are passed
+    over, for they may be meant for others."""
+    from gmr.formats.reading import given_options, read_with
 
+    strict = options.pop("strict", False)
+    given = given_options(
+        options.pop("positions", "replace"), options.pop("asf", None), options.pop("fps", None)
+    )
     if path == STDIO:
-        return read(sys.stdin.buffer, **options).with_name("<stdin>")
-    return read(path, **options)
+        return read_with(sys.stdin.buffer, given, strict=strict).with_name("<stdin>")
+    return read_with(path, given, strict=strict)
 
 
 def read_noting(path: Path | str, **options: Any) -> tuple[Motion, list[str]]:

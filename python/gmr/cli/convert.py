@@ -7,31 +7,26 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
-from gmr.cli.common import STDIO, Failures, Unit, files_of, progress, read_noting, say
+from gmr.cli.common import (
+    STDIO,
+    Failures,
+    Rate,
+    Unit,
+    files_of,
+    progress,
+    read_noting,
+    reading_options,
+    say,
+)
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
 
 __all__ = ["convert"]
-
-
-class _Rate(click.ParamType[float]):
-    """Frames a second, above 0."""
-
-    name = "FPS"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        try:
-            rate = float(value)
-        except ValueError:
-            self.fail(f"'{value}' is no number of frames a second", param, ctx)
-        if not 0 < rate < float("inf"):
-            self.fail(f"{value} frames a second cannot be; give a rate above 0", param, ctx)
-        return rate
 
 
 @dataclass(frozen=True)
@@ -48,7 +43,7 @@ class _Changes:
 @click.command(short_help="Convert motions: rate, unit, mirror image, dummies.")
 @click.argument("source", metavar="IN")
 @click.argument("target", metavar="OUT")
-@click.option("--fps", type=_Rate(), help="Resample to this rate: rotations by slerp.")
+@click.option("--fps", type=Rate(), help="Resample to this rate: rotations by slerp.")
 @click.option("--unit", type=Unit(), help="Convert to this unit: m, cm, mm, in, ft, cmu or metres per unit.")
 @click.option(
     "--from-unit",
@@ -59,11 +54,7 @@ class _Changes:
 @click.option(
     "--drop-dummies", is_flag=True, help="Leave out zero-length joints, all but those that BVH needs."
 )
-@click.option(
-    "--positions", type=click.Choice(["replace", "add"]), default="replace", show_default=True,
-    help="What position channels do to a joint's OFFSET.",
-)  # fmt: skip
-@click.option("--strict", is_flag=True, help="Refuse what is otherwise read with a note.")
+@reading_options
 def convert(
     source: str,
     target: str,
@@ -73,13 +64,15 @@ def convert(
     mirror: bool,
     drop_dummies: bool,
     positions: str,
+    asf: str | None,
+    amc_fps: float | None,
     strict: bool,
 ) -> int:
     """Convert a motion, or a folder of them.
 
     IN is a file, a folder (then OUT is one too, and gets the same tree) or - for standard input; OUT - is
     standard output. Without options every value is written as it was read. A file is replaced when its
-    successor is whole.
+    successor is whole. With an .amc its .asf is written beside it.
 
     \b
     Examples:
@@ -87,6 +80,7 @@ def convert(
       gmr convert takes/ mirrored/ --mirror
       gmr convert cmu.bvh metres.bvh --from-unit cmu --unit m
       gmr convert walk.bvh lean.bvh --drop-dummies
+      gmr convert walk.bvh walk.amc
       gmr convert - - --fps 30 < walk.bvh > walk30.bvh
     """
     if from_unit is not None and unit is None:
@@ -94,17 +88,20 @@ def convert(
     changes = _Changes(fps, unit, from_unit, drop_dummies, mirror)
     failures = Failures()
     guessed: dict[str, list[str]] = {}
+    beside: list[str] = []
     with progress(_jobs(source, target), "Converting") as watched:
         for path, out in watched:
             with failures.of(str(path)):
-                motion, warnings = read_noting(path, positions=positions, strict=strict)
+                motion, warnings = read_noting(path, positions=positions, asf=asf, fps=amc_fps, strict=strict)
                 for warning in warnings:
                     say(warning)
                 with _naming(motion):
                     motion = _changed(motion, changes, guessed)
-                _write(motion, out)
+                beside += _write(motion, out)
     for guess, names in guessed.items():
         say(f"{_several(names)} taken to be in {guess}; state another unit with --from-unit")
+    if beside:
+        say(f"the skeleton is in {beside[0] if len(beside) == 1 else f'{len(beside)} .asf files beside'}")
     return failures.exit_code()
 
 
@@ -189,17 +186,24 @@ def _several(names: list[str]) -> str:
     return names[0] if len(names) == 1 else f"{len(names)} motions ({names[0]}, ...)"
 
 
-def _write(motion: Motion, out: Path | str) -> None:
+def _write(motion: Motion, out: Path | str) -> list[str]:
+    """Writes the motion, and tells the file that was written beside, if one was."""
     from gmr.errors import GmrError
     from gmr.formats import write
+    from gmr.formats.registry import format_of_file
 
     if out == STDIO:
         write(motion, sys.stdout.buffer)
         sys.stdout.buffer.flush()
-        return
+        return []
     if isinstance(out, Path):
         try:
             out.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise GmrError(f"{out}: its folder cannot be made: {error.strerror}") from error
     write(motion, out)
+    chosen = format_of_file(str(out))
+    if chosen.name == "ASF" and motion.frame_count:
+        say(f"{out} holds the skeleton alone; write an .amc for the frames")
+    second = chosen.place_beside(Path(out))
+    return [] if second is None else [str(second)]

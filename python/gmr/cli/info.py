@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from gmr.cli.common import Failures, files_of, progress, read_noting
+from gmr.cli.common import Failures, files_of, progress, read_noting, reading_options
 from gmr.cli.pages import overview, page
 
 if TYPE_CHECKING:
@@ -25,12 +25,15 @@ FEW: Final = 3
 @click.command(short_help="What is in a file, and what is odd about it.")
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON: an object for one file, a list for more.")
-@click.option("--strict", is_flag=True, help="Refuse what is otherwise read with a note.")
-@click.option(
-    "--positions", type=click.Choice(["replace", "add"]), default="replace", show_default=True,
-    help="What position channels do to a joint's OFFSET.",
-)  # fmt: skip
-def info(files: tuple[str, ...], as_json: bool, strict: bool, positions: str) -> int:
+@reading_options
+def info(
+    files: tuple[str, ...],
+    as_json: bool,
+    positions: str,
+    asf: str | None,
+    amc_fps: float | None,
+    strict: bool,
+) -> int:
     """Tell what is in motion files, and what is odd about them.
 
     FILE is a file, a folder (all motions in it and below) or - for standard input. Units and the axis that
@@ -40,6 +43,7 @@ def info(files: tuple[str, ...], as_json: bool, strict: bool, positions: str) ->
     Examples:
       gmr info walk.bvh
       gmr info takes/                       a line for each, and what is odd about which
+      gmr info 07_01.amc --asf actor.asf
       gmr info --json takes/ | jq '.[] | select(.oddities != []) | .file'
       cat walk.bvh | gmr info -
     """
@@ -52,7 +56,7 @@ def info(files: tuple[str, ...], as_json: bool, strict: bool, positions: str) ->
     with progress(paths, "Reading") as watched:
         for path in watched:
             with failures.of(str(path)):
-                found[str(path)] = _described(path, strict=strict, positions=positions)
+                found[str(path)] = _described(path, strict=strict, positions=positions, asf=asf, fps=amc_fps)
     if as_json:
         alone = len(files) == 1 and not Path(files[0]).is_dir()
         click.echo(_as_json(found, failures.errors, alone))

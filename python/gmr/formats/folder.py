@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from gmr.errors import FormatError, GmrError
-from gmr.formats.reading import Positions, read
-from gmr.formats.registry import suffixes
+from gmr.formats.reading import Positions, Skeletons, given_options, read_with
+from gmr.formats.registry import FORMATS, suffixes
 from gmr.threads import thread_count
 
 if TYPE_CHECKING:
@@ -35,7 +35,8 @@ def motion_files(folder: str | os.PathLike[str]) -> list[str]:
     """Relative paths (with ``/``) of all files in the folder and those below that gmr can read, in name
     order.
 
-    Hidden files and folders are left out; linked folders are followed, each once.
+    Files that are only part of others, such as the ASF of an AMC, and hidden files and folders are left out;
+    linked folders are followed, each once.
 
     Raises:
         FormatError: there is no such folder.
@@ -56,6 +57,8 @@ def read_folder(
     threads: int | None = None,
     errors: Literal["raise", "collect"] = "raise",
     positions: Positions = "replace",
+    asf: Skeletons | None = None,
+    fps: float | None = None,
     strict: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> Takes:
@@ -65,7 +68,9 @@ def read_folder(
         folder: where they are; files of other kinds and hidden ones are left out.
         threads: how many files are read at once; 0 or None: all cores. The result does not depend on it.
         errors: "raise" the first file's error in name order, or "collect" them in ``.failed``.
-        positions: see :func:`gmr.read`.
+        positions: see :func:`gmr.read`; for the BVH files.
+        asf: see :func:`gmr.read`; for the AMC files.
+        fps: see :func:`gmr.read`; for the AMC files.
         strict: see :func:`gmr.read`.
         progress: called with the number of files done and of all, after each.
 
@@ -78,11 +83,12 @@ def read_folder(
     if errors not in ("raise", "collect"):
         raise ValueError(f"errors='{errors}' is not known; use 'raise' or 'collect'")
     most = thread_count(threads) or os.cpu_count() or 1
+    options = given_options(positions, asf, fps)
     paths = motion_files(folder)
     workers = max(1, min(most, len(paths)))
     takes = Takes()
     with ThreadPoolExecutor(workers, thread_name_prefix="gmr-read") as pool:
-        jobs = [pool.submit(read, Path(folder, path), positions=positions, strict=strict) for path in paths]
+        jobs = [pool.submit(read_with, Path(folder, path), options, strict=strict) for path in paths]
         try:
             for done, (path, job) in enumerate(zip(paths, jobs, strict=True), start=1):
                 _take(takes, path, job, collect=errors == "collect")
@@ -110,6 +116,7 @@ def _walk(folder: Path, prefix: str, seen: set[tuple[int, int]]) -> Iterator[str
     if (status.st_dev, status.st_ino) in seen:
         return
     seen.add((status.st_dev, status.st_ino))
+    names = []
     with os.scandir(folder) as entries:
         for entry in sorted(entries, key=lambda entry: entry.name):
             if entry.name.startswith("."):
@@ -117,4 +124,6 @@ def _walk(folder: Path, prefix: str, seen: set[tuple[int, int]]) -> Iterator[str
             if entry.is_dir():
                 yield from _walk(folder / entry.name, f"{prefix}{entry.name}/", seen)
             elif Path(entry.name).suffix.lower() in suffixes():
-                yield prefix + entry.name
+                names.append(entry.name)
+    serving: set[str] = set().union(*(known.serving_files(names) for known in FORMATS))
+    yield from (prefix + name for name in names if name not in serving)

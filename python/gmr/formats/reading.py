@@ -5,33 +5,46 @@ from __future__ import annotations
 import difflib
 import os
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Literal
+from typing import IO, TYPE_CHECKING, Any, Literal
 
 from gmr.errors import FormatError
-from gmr.formats.registry import format_of_file, format_of_text, named_format
+from gmr.formats.registry import Format, format_of_file, format_of_text, named_format
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
 
-__all__ = ["Positions", "Source", "read"]
+__all__ = ["Positions", "Skeletons", "Source", "given_options", "read", "read_with"]
 
 Positions = Literal["replace", "add"]
 Source = str | os.PathLike[str] | bytes | bytearray | memoryview | IO[str] | IO[bytes]
+Skeletons = str | os.PathLike[str] | bytes
+"""An ASF: its path, or its contents."""
 
 
 def read(
-    source: Source, format: str | None = None, *, positions: Positions = "replace", strict: bool = False
+    source: Source,
+    format: str | None = None,
+    *,
+    positions: Positions = "replace",
+    asf: Skeletons | None = None,
+    fps: float | None = None,
+    strict: bool = False,
 ) -> Motion:
     """Read a motion.
 
     Args:
         source: a path; or the contents of a file as bytes; or an open file, text or binary.
-        format: "bvh"; told by the suffix of a path, and by the first bytes of anything else, where left out.
-        positions: whether position channels "replace" a joint's OFFSET (as in Blender) or "add" to it.
+        format: "bvh", "amc" or "asf"; told by the suffix of a path, and by the first bytes of anything else,
+            where left out.
+        positions: BVH: whether position channels "replace" a joint's OFFSET (as in Blender) or "add" to it.
+        asf: AMC: its skeleton, a path or the bytes of a file; where left out, the one beside (07_01.asf or
+            07.asf for 07_01.amc, or the only one in the folder).
+        fps: AMC: frames a second, for most files do not say; 120 where they and you do not.
         strict: refuse what is read with a warning otherwise, such as fewer rows than the file declares.
 
     Returns:
-        The motion as the file has it, all joints kept; ``unit`` is None where the format names none.
+        The motion as the file has it, all joints kept; ``unit`` is None where the file names none. An ASF
+        alone is a motion without frames.
 
     Raises:
         FormatError: the file is missing, empty or not what it claims to be; says where and how to mend it.
@@ -39,8 +52,35 @@ def read(
     Warns:
         FormatWarning: something odd was read all the same.
     """
+    options = given_options(positions, asf, fps)
+    return read_with(source, options, format=format, strict=strict, all_taken=True)
+
+
+def given_options(positions: Positions, asf: Skeletons | None, fps: float | None) -> dict[str, Any]:
+    """What differs from how each format is read by itself.
+
+    Raises:
+        ValueError: ``positions`` is neither "replace" nor "add".
+    """
     if positions not in ("replace", "add"):
         raise ValueError(f"positions='{positions}' is not known; use 'replace' or 'add'")
+    options = {"positions": None if positions == "replace" else positions, "asf": asf, "fps": fps}
+    return {name: value for name, value in options.items() if value is not None}
+
+
+def read_with(
+    source: Source,
+    options: dict[str, Any],
+    *,
+    format: str | None = None,
+    strict: bool = False,
+    all_taken: bool = False,
+) -> Motion:
+    """:func:`read` with options for several formats, each of which takes what it knows.
+
+    Raises:
+        FormatError: as :func:`read`; or ``all_taken`` is asked for and the format does not know an option.
+    """
     chosen = None if format is None else named_format(format)
     name, data = _contents(source, any_suffix=chosen is not None)
     if not data:
@@ -48,7 +88,16 @@ def read(
     if chosen is None:
         is_path = isinstance(source, str | os.PathLike)
         chosen = format_of_file(name or "") if is_path else format_of_text(data, name)
-    return chosen.read(data, name=name, positions=positions, strict=strict)
+    return chosen.read(data, name=name, strict=strict, **_taken(chosen, options, name, all_taken))
+
+
+def _taken(chosen: Format, options: dict[str, Any], name: str | None, all_taken: bool) -> dict[str, Any]:
+    """Those of the options that the format knows."""
+    unknown = [option for option in options if option not in chosen.options]
+    if unknown and all_taken:
+        what = f"{unknown[0]}= says nothing of {chosen.name} files; leave it out"
+        raise FormatError(what, file=name)
+    return {option: value for option, value in options.items() if option in chosen.options}
 
 
 def _contents(source: Source, any_suffix: bool) -> tuple[str | None, bytes]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import codecs
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib import import_module
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Final
 
 from gmr.errors import FormatError
@@ -24,18 +25,25 @@ class Format:
     Args:
         name: as people call it.
         suffixes: of its files, in lower case.
-        begins: what its files begin with.
+        begins: what its files begin with, any of these: words of text in upper case, after comments that
+            begin with ``#``, or the first bytes of a binary file.
         module: the module that knows it, imported when first needed.
-        reader: its function ``(data: bytes, *, name, positions, strict) -> Motion``.
+        reader: its function ``(data: bytes, *, name, strict, **options) -> Motion``.
         writer: its function ``(motion) -> bytes`` or pieces of them.
+        options: what the reader can be told besides ``name`` and ``strict``.
+        beside: suffix and writer of a second file without which its files say nothing.
+        serving: its function ``(names) -> names``: of the files of a folder, those that are part of others.
     """
 
     name: str
     suffixes: tuple[str, ...]
-    begins: str
+    begins: tuple[bytes, ...]
     module: str
     reader: str
     writer: str
+    options: tuple[str, ...] = ()
+    beside: tuple[str, str] | None = None
+    serving: str | None = None
 
     def read(self, data: bytes, **options: Any) -> Motion:
         """The motion in ``data``."""
@@ -44,12 +52,54 @@ class Format:
 
     def write(self, motion: Motion) -> Iterable[bytes]:
         """The pieces, in order, of a file that holds ``motion``."""
-        write: Callable[[Motion], bytes | Iterable[bytes]] = getattr(import_module(self.module), self.writer)
+        return self._pieces(self.writer, motion)
+
+    def write_beside(self, motion: Motion) -> Iterable[bytes]:
+        """The pieces, in order, of the second file."""
+        assert self.beside is not None
+        return self._pieces(self.beside[1], motion)
+
+    def place_beside(self, path: Path) -> Path | None:
+        """Where the second file of a file at ``path`` stands; None where there is none."""
+        if self.beside is None:
+            return None
+        suffix = self.beside[0]
+        return path.with_suffix(suffix.upper() if path.suffix.isupper() else suffix)
+
+    def serving_files(self, names: Iterable[str]) -> set[str]:
+        """Of the names of the files of one folder, those that are only part of others."""
+        if self.serving is None:
+            return set()
+        serving: Callable[[Iterable[str]], set[str]] = getattr(import_module(self.module), self.serving)
+        return serving(names)
+
+    def _pieces(self, writer: str, motion: Motion) -> Iterable[bytes]:
+        write: Callable[[Motion], bytes | Iterable[bytes]] = getattr(import_module(self.module), writer)
         made = write(motion)
         return [made] if isinstance(made, bytes) else made
 
 
-FORMATS: Final = (Format("BVH", (".bvh",), "HIERARCHY", "gmr.formats.bvh", "read_bvh", "bvh_chunks"),)
+_LOOKED_AT = 4096
+"""Bytes that tell a format at most."""
+
+_COMMENTS = re.compile(rb"\A(?:\s+|#[^\r\n]*+)*+")
+
+FORMATS: Final = (
+    Format(
+        "BVH", (".bvh",), (b"HIERARCHY",), "gmr.formats.bvh", "read_bvh", "bvh_chunks",
+        options=("positions",),
+    ),
+    Format(
+        "AMC", (".amc",), (b":FULLY-SPECIFIED", b":DEGREES", b":RADIANS", b":SAMPLES-PER-SECOND"),
+        "gmr.formats.asf_amc", "read_amc", "amc_chunks",
+        options=("asf", "fps"), beside=(".asf", "asf_chunks"),
+    ),
+    Format(
+        "ASF", (".asf",), (b":VERSION", b":NAME", b":UNITS", b":DOCUMENTATION", b":ROOT", b":BONEDATA"),
+        "gmr.formats.asf_amc", "read_asf", "asf_chunks",
+        serving="serving_asf",
+    ),
+)  # fmt: skip
 
 
 def suffixes() -> tuple[str, ...]:
@@ -95,14 +145,14 @@ def format_of_text(data: bytes, file: str | None) -> Format:
     Raises:
         FormatError: none begins like this.
     """
-    start = data[:64]
+    start = data[:_LOOKED_AT]
     if start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         start = start.decode("utf-16", "replace").encode()
-    start = start.removeprefix(codecs.BOM_UTF8).lstrip()
+    start = _COMMENTS.sub(b"", start.removeprefix(codecs.BOM_UTF8))
     for known in FORMATS:
-        if start.upper().startswith(known.begins.encode()):
+        if data.startswith(known.begins) or start.upper().startswith(known.begins):
             return known
-    begins = ", ".join(f"'{known.begins}' ({known.name})" for known in FORMATS)
+    begins = ", ".join(f"'{known.begins[0].decode('latin-1')}' ({known.name})" for known in FORMATS)
     raise FormatError(
         f"this begins like no format that gmr knows: {start[:20]!r}. A file begins with {begins}; "
         "check that it is a motion, or name its format.",

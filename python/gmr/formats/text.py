@@ -39,6 +39,7 @@ class Text:
         self.name = name
         self.strict = strict
         self.oddities = 0
+        self._said: set[str] = set()
         self._said_latin = False
         self.data = self._utf8(data)
         self.at = len(codecs.BOM_UTF8) if data.startswith(codecs.BOM_UTF8) else 0
@@ -126,9 +127,16 @@ class Text:
             expected=expected,
         )
 
-    def odd(self, what: str, *, at: int | None = None) -> None:
-        """Warns of something that is read all the same; under ``strict`` it is an error."""
+    def odd(self, what: str, *, at: int | None = None, kind: str | None = None) -> None:
+        """Warns of something that is read all the same; under ``strict`` it is an error.
+
+        Of many of one ``kind`` only the first is told.
+        """
         self.oddities += 1
+        if kind is not None:
+            if kind in self._said:
+                return
+            self._said.add(kind)
         error = self.failure(what, at=at)
         if self.strict:
             raise error

@@ -28,8 +28,9 @@ def write(motion: Motion, target: Target, format: str | None = None) -> None:
 
     Args:
         motion: what was read as rows is written with the very same values, names and channels.
-        target: a path, or a file open for writing, text or binary.
-        format: "bvh"; told by the suffix where left out, BVH for an open file.
+        target: a path, or a file open for writing, text or binary. With a path to an .amc its .asf is written
+            beside it, both or none; an .asf alone, and an .amc into an open file, hold half of a motion.
+        format: "bvh", "amc" or "asf"; told by the suffix where left out, BVH for an open file.
 
     Raises:
         GmrError: the file cannot be written; what was there is untouched.
@@ -58,11 +59,16 @@ def write(motion: Motion, target: Target, format: str | None = None) -> None:
 
 
 def _write_file(motion: Motion, path: Path, chosen: Format) -> None:
-    pieces = chosen.write(motion)
+    beside = chosen.place_beside(path)
+    if beside is not None and os.path.isdir(beside):  # noqa: PTH112
+        raise GmrError(f"{beside}: this is a folder; its place is needed for the other half of the motion")
+    parts = {path: chosen.write(motion)}
+    if beside is not None:
+        parts[beside] = chosen.write_beside(motion)
     try:
-        with replacing(path) as (file,):
-            for piece in pieces:
-                file.write(piece)
+        with replacing(*parts) as files:
+            for file, pieces in zip(files, parts.values(), strict=True):
+                file.writelines(pieces)
     except OSError as error:
         raise GmrError(f"{path}: {_why_not(path, error)}") from error
 

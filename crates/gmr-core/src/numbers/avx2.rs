@@ -3,6 +3,7 @@
 //! The method is in the manner of W. Mula, "SIMD-ized integer parsing" (2016), with the decimal point taken out by the
 //! shuffle. It has no branch that depends on a number's length, sign or point.
 
+use super::amc::{self, FramesRead, ParseFrames};
 use super::layout::{DIVISORS, GATHER, WIDTH};
 use super::parse::{self, ParseRows, RowsRead};
 use std::arch::x86_64::*;
@@ -18,6 +19,18 @@ pub(super) fn rows(job: &ParseRows<'_>, out: &mut [f64]) -> RowsRead {
 #[target_feature(enable = "avx2,bmi1,bmi2")]
 fn rows_avx2(job: &ParseRows<'_>, out: &mut [f64]) -> RowsRead {
     parse::rows(job, out, |text, at| number(text, at))
+}
+
+/// Reads the frames of `job`; the caller has seen that the machine has AVX2.
+pub(super) fn frames(job: &ParseFrames<'_>) -> FramesRead {
+    debug_assert!(crate::Isa::Avx2.is_available());
+    // SAFETY: `ParseFrames::run_on` comes here only where AVX2 is available.
+    unsafe { frames_avx2(job) }
+}
+
+#[target_feature(enable = "avx2")]
+fn frames_avx2(job: &ParseFrames<'_>) -> FramesRead {
+    amc::frames(job, |text, at| number(text, at))
 }
 
 /// `[-]digits[.digits]` of at most 15 bytes, at least 16 bytes before the text's end.

@@ -33,8 +33,8 @@ impl fmt::Display for NotFinite {
 impl std::error::Error for NotFinite {}
 
 /// Longest text of one value and the blank after it, rounded up.
-const LONGEST: usize = 64;
-const STAGE: usize = 8192;
+pub(super) const LONGEST: usize = 64;
+pub(super) const STAGE: usize = 8192;
 
 impl FormatRows<'_> {
     /// Appends one line a row to `out`: values parted by a blank, `\n` at the end.
@@ -66,7 +66,7 @@ impl FormatRows<'_> {
 
 /// Writes a finite `value` at `at` and gives the place after it.
 #[inline]
-fn write_value(stage: &mut [u8; STAGE], at: usize, value: f64) -> usize {
+pub(super) fn write_value(stage: &mut [u8; STAGE], at: usize, value: f64) -> usize {
     stage[at] = b'-';
     let at = at + usize::from(value.is_sign_negative());
     match eight_places(value.abs()) {

@@ -2,6 +2,7 @@
 //!
 //! Masks have four bits a byte, the narrowest that one instruction gives here; one bit of each four is kept.
 
+use super::amc::{self, FramesRead, ParseFrames};
 use super::layout::{DIVISORS, GATHER, WIDTH};
 use super::parse::{self, ParseRows, RowsRead};
 use std::arch::aarch64::*;
@@ -15,6 +16,17 @@ pub(super) fn rows(job: &ParseRows<'_>, out: &mut [f64]) -> RowsRead {
 #[target_feature(enable = "neon")]
 fn rows_neon(job: &ParseRows<'_>, out: &mut [f64]) -> RowsRead {
     parse::rows(job, out, |text, at| number(text, at))
+}
+
+/// Reads the frames of `job`; every AArch64 machine has NEON.
+pub(super) fn frames(job: &ParseFrames<'_>) -> FramesRead {
+    // SAFETY: NEON is part of the AArch64 base line.
+    unsafe { frames_neon(job) }
+}
+
+#[target_feature(enable = "neon")]
+fn frames_neon(job: &ParseFrames<'_>) -> FramesRead {
+    amc::frames(job, |text, at| number(text, at))
 }
 
 /// `[-]digits[.digits]` of at most 15 bytes, at least 16 bytes before the text's end.

@@ -109,7 +109,7 @@ pub fn count_rows(text: &[u8], start: usize) -> usize {
 }
 
 #[inline(always)]
-fn skip_blanks(text: &[u8], mut at: usize) -> usize {
+pub(super) fn skip_blanks(text: &[u8], mut at: usize) -> usize {
     while text.get(at).is_some_and(|&byte| is_blank(byte)) {
         at += 1;
     }
@@ -118,7 +118,7 @@ fn skip_blanks(text: &[u8], mut at: usize) -> usize {
 
 /// The next token after any number of blank lines; the end of the text where only padding is left.
 #[inline(always)]
-fn row_start(text: &[u8], mut at: usize) -> usize {
+pub(super) fn row_start(text: &[u8], mut at: usize) -> usize {
     while text.get(at).is_some_and(|&byte| is_blank(byte) || is_line_end(byte)) {
         at += 1;
     }
@@ -130,7 +130,7 @@ const PADDING: [u8; 2] = [0, 0x1a];
 
 /// Whether only padding is left from `at` on.
 #[inline(always)]
-fn is_padding(text: &[u8], at: usize) -> bool {
+pub(super) fn is_padding(text: &[u8], at: usize) -> bool {
     text.get(at).is_some_and(|byte| PADDING.contains(byte)) && all_padding(&text[at..])
 }
 
@@ -139,7 +139,7 @@ fn all_padding(rest: &[u8]) -> bool {
     rest.iter().all(|&byte| PADDING.contains(&byte) || is_blank(byte) || is_line_end(byte))
 }
 
-fn line_end(text: &[u8], at: usize) -> usize {
+pub(super) fn line_end(text: &[u8], at: usize) -> usize {
     text[at..].iter().position(|&byte| is_line_end(byte)).map_or(text.len(), |length| at + length)
 }
 
@@ -162,7 +162,7 @@ fn flaw(text: &[u8], token: &Range<usize>) -> Flaw {
 }
 
 /// Whether a number could begin with these bytes, which are none: `-`, `1.5e`, `1.5e-`.
-fn may_go_on(token: &[u8]) -> bool {
+pub(super) fn may_go_on(token: &[u8]) -> bool {
     let mut longer = token.to_vec();
     longer.push(b'0');
     matches!(scalar::read(&longer, 0), Token::Value(..) | Token::Overflow(_))

@@ -7,7 +7,7 @@
 
 use super::euler_block::{EulerBlock, compose};
 use super::half_angle::half_angle_of;
-use super::quaternion::{multiply_axis, normalize};
+use super::quaternion::{multiply_axis, normalize, rotate};
 use crate::Isa;
 use crate::error::{JobError, ShapeError};
 use crate::lanes::rows::{SourceRows, TargetRows, blocks};
@@ -71,6 +71,42 @@ pub fn euler_to_quaternions<T: Real>(
     angles: EulerColumns<'_>,
     out: &mut [T],
 ) -> Result<(), JobError> {
+    convert(rows, column_count, angles, vec![None; angles.columns.len()], out)
+}
+
+/// [`euler_to_quaternions`] about axes of each slot's own: with `C` its frame in `frames` (S, 4) and `A` the rotation
+/// that its angles compose, the slot's rotation is `C A C^-1`.
+///
+/// That is `A` with its axis turned by `C`, so it costs one rotation of a vector.
+///
+/// # Errors
+/// As [`euler_to_quaternions`].
+pub fn turned_euler_to_quaternions<T: Real>(
+    rows: &[f64],
+    column_count: usize,
+    angles: EulerColumns<'_>,
+    frames: &[[f64; 4]],
+    out: &mut [T],
+) -> Result<(), JobError> {
+    ShapeError::check("frames", 4 * angles.columns.len(), 4 * frames.len())?;
+    let turned = |frame: &[f64; 4]| frame[..3].iter().any(|&component| component != 0.0);
+    let turns = frames.iter().map(|frame| turned(frame).then(|| columns_of(*frame))).collect();
+    convert(rows, column_count, angles, turns, out)
+}
+
+/// The x, y and z axis as the rotation `q` turns them.
+fn columns_of<T: Real>(q: [f64; 4]) -> [[T; 3]; 3] {
+    let axis = |axis: usize| rotate(q, std::array::from_fn(|k| f64::from(u8::from(k == axis))));
+    std::array::from_fn(|k| axis(k).map(T::from_f64))
+}
+
+fn convert<T: Real>(
+    rows: &[f64],
+    column_count: usize,
+    angles: EulerColumns<'_>,
+    turns: Vec<Option<[[T; 3]; 3]>>,
+    out: &mut [T],
+) -> Result<(), JobError> {
     angles.check(column_count)?;
     let slot_count = angles.columns.len();
     let frame_count = rows.len().checked_div(column_count).unwrap_or(0);
@@ -78,7 +114,7 @@ pub fn euler_to_quaternions<T: Real>(
     if column_count > 0 {
         ShapeError::check("out", frame_count * slot_count * 4, out.len())?;
     }
-    T::dispatch(Isa::current(), Conversion { rows, column_count, angles, out });
+    T::dispatch(Isa::current(), Conversion { rows, column_count, angles, turns, out });
     Ok(())
 }
 
@@ -87,6 +123,8 @@ struct Conversion<'a, T> {
     rows: &'a [f64],
     column_count: usize,
     angles: EulerColumns<'a>,
+    /// For each slot that turns about axes of its own, those axes.
+    turns: Vec<Option<[[T; 3]; 3]>>,
     out: &'a mut [T],
 }
 
@@ -101,12 +139,22 @@ impl<T: Real> Kernel<T> for Conversion<'_, T> {
         for frames in blocks::<L>(out.row_count()) {
             block.load(&mut rows, frames.clone());
             let (target, stride) = out.block(&frames, L::WIDTH);
-            for slot in 0..slot_count {
-                L::store_columns(block.quaternion(slot), &mut target[4 * slot..], stride);
+            for (slot, axes) in self.turns.iter().enumerate() {
+                let q = block.quaternion(slot);
+                let q = axes.as_ref().map_or(q, |axes| about(axes, q));
+                L::store_columns(q, &mut target[4 * slot..], stride);
             }
             out.finish(&frames, L::WIDTH);
         }
     }
+}
+
+/// The rotation `q` about its axis as seen by `axes`.
+#[inline(always)]
+fn about<L: Lanes>(axes: &[[L::Real; 3]; 3], [x, y, z, w]: [L; 4]) -> [L; 4] {
+    let n = L::splat;
+    let along = |k: usize| n(axes[0][k]) * x + n(axes[1][k]) * y + n(axes[2][k]) * z;
+    [along(0), along(1), along(2), w]
 }
 
 /// Angles in degrees (F, S, 3) about the axes (S, 3) of each slot, from `quaternions` (F, S, 4), which need no unit
@@ -269,6 +317,34 @@ mod tests {
             let steps = angles.windows(2).flat_map(|w| (0..3).map(move |n| (w[1][n] - w[0][n]).abs()));
             prop_assert!(steps.fold(0.0, f64::max) < 10.0);
         }
+    }
+
+    proptest! {
+        #[test]
+        fn a_slot_turns_about_axes_of_its_own(
+            degrees in any_degrees(),
+            frame in any_degrees(),
+            order in 0_usize..12,
+        ) {
+            let axes = ORDERS[order];
+            let c = compose(frame, axes);
+            let angles = EulerColumns { columns: &[[0, 1, 2], [0, 1, 2]], axes: &[axes, axes] };
+            let frames = [c.to_array(), DQuat::IDENTITY.to_array()];
+            let (mut out, mut single) = ([0.0_f64; 8], [0.0_f32; 8]);
+            turned_euler_to_quaternions(&degrees, 3, angles, &frames, &mut out).unwrap();
+            turned_euler_to_quaternions(&degrees, 3, angles, &frames, &mut single).unwrap();
+            let a = compose(degrees, axes);
+            let [turned, plain] = [0, 4].map(|k| std::array::from_fn(|n| out[k + n]));
+            prop_assert!(same_rotation(turned, c * a * c.inverse()));
+            prop_assert!(same_rotation(plain, a));
+            prop_assert!(out.iter().zip(single).all(|(a, b)| (a - f64::from(b)).abs() < 1e-6));
+        }
+    }
+
+    #[test]
+    fn a_frame_is_needed_for_every_slot() {
+        let angles = EulerColumns { columns: &[[0, 1, 2]], axes: &[[0, 1, 2]] };
+        assert!(turned_euler_to_quaternions(&[0.0; 3], 3, angles, &[], &mut [0.0; 4]).is_err());
     }
 
     #[test]

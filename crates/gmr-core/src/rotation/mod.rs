@@ -10,7 +10,9 @@ mod quaternion;
 mod slerp;
 
 pub(crate) use euler::check_indices;
-pub use euler::{Axes, EulerColumns, euler_to_quaternions, quaternions_to_euler};
+pub use euler::{
+    Axes, EulerColumns, euler_to_quaternions, quaternions_to_euler, turned_euler_to_quaternions,
+};
 pub(crate) use euler_block::EulerBlock;
 pub use quaternion::{
     IDENTITY_F32, IDENTITY_F64, conjugate, dot, exp, log, multiply, multiply_axis, multiply_inverse,

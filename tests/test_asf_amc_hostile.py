@@ -1,0 +1,179 @@
+"""No file makes the readers of ASF and AMC crash, hang or take memory beyond what it could mean."""
+
+from __future__ import annotations
+
+import tracemalloc
+import warnings
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from amc_text import AMC, ASF, amc, asf, read_back
+from gmr import FormatError, FormatWarning, Motion
+from gmr.dof_rows import DofRows
+from gmr.formats.asf_amc import parse_asf, read_amc, read_asf
+
+MANY = 50_000
+LONGEST_MESSAGE = 500
+
+
+def attempt(frames: bytes, skeleton: bytes) -> Motion | None:
+    """The motion, or None where it is refused; anything else that is raised fails the test."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            return read_amc(frames, asf=skeleton)
+        except FormatError as error:
+            if len(str(error)) > LONGEST_MESSAGE:
+                raise AssertionError(f"no sentence that helps: {error}") from error
+            return None
+
+
+def test_an_amc_cut_anywhere_is_refused_or_read_as_far_as_it_goes() -> None:
+    whole = read_amc(amc(), asf=asf()).source.numbers[0]
+    for text in (AMC, AMC.replace("\n", "\r\n")):
+        for length in range(len(text)):
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                try:
+                    motion = read_amc(text[:length].encode(), asf=asf())
+                except FormatError:
+                    continue
+            assert all(warning.category is FormatWarning for warning in caught)
+            found = motion.source.numbers[0]
+            if len(found) == 2:
+                # A last number may have lost digits, which nobody can see.
+                assert found[:, :-1].tolist() == whole[:, :-1].tolist()
+            elif len(found) == 1 and not caught:
+                assert found[0, :-1].tolist() == whole[0, :-1].tolist()
+
+
+def test_an_asf_cut_anywhere_is_refused_or_whole() -> None:
+    whole = parse_asf(asf())
+    for length in range(len(ASF) - 1):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                found = parse_asf(ASF[:length].encode())
+            except FormatError:
+                continue
+        assert found == whole, length
+
+
+mutations = st.tuples(
+    st.integers(0, 1000),
+    st.integers(0, 12),
+    st.one_of(
+        st.binary(max_size=8),
+        st.sampled_from(
+            [b"begin", b"end", b"\n", b"nan", b"1e400", b"-", b"\0", b"#", b":root", b"name", b"9" * 40, b"("]
+        ),
+    ),
+)
+
+
+def changed(text: str, changes: list[tuple[int, int, bytes]]) -> bytes:
+    data = text.encode()
+    for at, length, new in changes:
+        at %= len(data) + 1
+        data = data[:at] + new + data[at + length :]
+    return data
+
+
+@given(st.lists(mutations, max_size=3), st.lists(mutations, max_size=3))
+def test_files_with_anything_in_them_are_refused_or_read_back_as_they_were_read(
+    of_asf: list[tuple[int, int, bytes]], of_amc: list[tuple[int, int, bytes]]
+) -> None:
+    motion = attempt(changed(AMC, of_amc), changed(ASF, of_asf))
+    if motion is None:
+        return
+    found = read_back(motion)
+    assert found == motion
+    assert isinstance(motion.source, DofRows)
+    assert found.source.numbers[0].tobytes() == motion.source.values.tobytes()
+
+
+@given(st.binary(max_size=300))
+def test_any_bytes_are_refused_or_read(data: bytes) -> None:
+    attempt(data, asf())
+    attempt(b":DEGREES\n1\n" + data, asf())
+    attempt(amc(), data)
+    attempt(amc(), b":root\n:bonedata\nbegin\n" + data)
+    attempt(amc(), b":root\n:hierarchy\nbegin\n" + data)
+
+
+def chain(count: int) -> bytes:
+    """The ASF of bones that hang on one another."""
+    bones = "".join(
+        f"begin\nname b{k}\ndirection 0 1 0\nlength 1\naxis 0 0 0 XYZ\ndof rx\nend\n" for k in range(count)
+    )
+    above = "".join(f"{'root' if k == 0 else f'b{k - 1}'} b{k}\n" for k in range(count))
+    return f":root\norder TX TY TZ\n:bonedata\n{bones}:hierarchy\nbegin\n{above}end\n".encode()
+
+
+def test_bones_may_hang_on_one_another_as_deeply_as_memory_allows() -> None:
+    skeleton = chain(MANY // 5)
+    frame = "1\nroot 0 0 0\n" + "".join(f"b{k} 90\n" for k in range(MANY // 5))
+    motion = read_amc(frame.encode(), asf=skeleton)
+    assert motion.skeleton.joint_count == MANY // 5 + 1
+    assert motion.positions()[0, 2].tolist() == pytest.approx([0, -1, 1], abs=1e-6)
+    assert read_back(motion) == motion
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ":name\n" * MANY,
+        ":bonedata\n" + "begin\n" * MANY,
+        ":bonedata\nbegin\nname a\n" + "limits (1 2)\n" * MANY,
+        ":bonedata\nbegin\nname a\nlimits " + "(" * MANY,
+        ":bonedata\nbegin\nname a\nlimits " + "(1 " * MANY,
+        ":bonedata\nbegin\nname a\ndof " + "rx " * MANY,
+        ":bonedata\nbegin\nname " + "a" * MANY,
+        ":root\norder " + "TX " * MANY,
+        ":root\n:hierarchy\nbegin\nroot " + "root " * MANY,
+        ":version" * MANY,
+        "#" * MANY,
+        "#\n" * MANY,
+        "\r" * MANY,
+    ],
+)
+def test_endless_repetition_is_refused(text: str) -> None:
+    assert attempt(amc(), text.encode()) is None
+    attempt(text.encode(), asf())
+
+
+@pytest.mark.parametrize("number", ["1000000000000000000", "9" * 19, "9" * 5000])
+def test_a_frame_number_costs_no_memory(number: str) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        motion = read_amc(amc(("\n1\n", f"\n{number}\n")), asf=asf())
+    assert motion.frame_count == 2
+
+
+def test_frames_without_bones_take_memory_in_proportion_to_the_file() -> None:
+    frames = b":DEGREES\n" + b"1\nb0 1\n" * MANY
+    skeleton = chain(1000)
+    parse_asf(skeleton)  # which is shared from then on, and so is not counted
+    tracemalloc.start()
+    with pytest.raises(FormatError, match="nearly all bones are missing"):
+        read_amc(frames, asf=skeleton)
+    assert tracemalloc.get_traced_memory()[1] < 40 * len(frames)
+    tracemalloc.stop()
+
+
+def test_many_odd_places_are_said_once() -> None:
+    frames = b"".join(b"%d\nroot 1 2 3 4 5 6\n" % (k * k) for k in range(2000))
+    with pytest.warns(FormatWarning) as caught:
+        motion = read_amc(frames, asf=asf())
+    assert motion.frame_count == 2000
+    assert len(caught) == 2  # missing bones, and numbers that skip
+
+
+def test_a_skeleton_without_degrees_of_freedom_has_frames_all_the_same() -> None:
+    bone = b":bonedata\nbegin\nname a\ndirection 1 0 0\nlength 2\nend\n"
+    still = b":root\norder RX\n" + bone + b":hierarchy\nbegin\nroot a\nend\n"
+    motion = read_amc(b"1\nroot 90\n2\nroot 0\na\n", asf=still)
+    assert motion.positions()[:, 1].tolist() == [[2, 0, 0], [2, 0, 0]]
+    assert read_asf(still).skeleton.slots.tolist() == [0, -1]
