@@ -28,7 +28,7 @@ pub(super) fn frames(job: &ParseFrames<'_>) -> FramesRead {
     unsafe { frames_avx2(job) }
 }
 
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,bmi1,bmi2")]
 fn frames_avx2(job: &ParseFrames<'_>) -> FramesRead {
     amc::frames(job, |text, at| number(text, at))
 }
