@@ -16,7 +16,7 @@ import re
 from dataclasses import dataclass, field
 
 from gmr.errors import FormatError
-from gmr.formats.bvh_channels import read_channels
+from gmr.formats.channel_lists import read_channels
 from gmr.formats.text import Text, named, shown
 from gmr.formats.vectors import Vector, take_vector
 from gmr.skeleton import End
