@@ -109,7 +109,7 @@ def _configuration(skeleton: Skeleton) -> list[str]:
         if links[top] >= 0:
             found.append(f"{names[top]} cut from {names[links[top]]}")
         if top != root:
-            found.append(f"the tree of {names[top]} turned over, with {names[root]} as its root")
+            found.append(f"the tree of {names[top]} turned over onto {names[root]}")
     return found
 
 

@@ -66,11 +66,12 @@ class _Reader:
         layout = self.layout(home_parents)
         skeleton = self.skeleton(names, home_parents, layout)
         source = self.source(skeleton, layout)
+        frame_time = self.seconds_or_metres("frame_time")
         unit = self.seconds_or_metres("unit") if "unit" in self.held.metadata else None
         try:
-            return Motion(skeleton, self.seconds_or_metres("frame_time"), source, unit, self.name)
+            return Motion(skeleton, frame_time, source, unit, self.name)
         except GmrError as error:
-            self.wrong(f"{error:.300}")
+            self.wrong(f"{error!s:.300}.")
 
     @property
     def is_moved(self) -> bool:
@@ -104,7 +105,7 @@ class _Reader:
             channels = tuple(tuple(own) for own in listed)
             return ChannelLayout(channels, tuple(parents.tolist()), post["positions"] == "add")
         except GmrError as error:
-            self.wrong(f"post in the metadata: {error:.300}.")
+            self.wrong(f"post in the metadata: {error!s:.300}.")
 
     def skeleton(
         self, names: list[str], home_parents: NDArray[np.int32], layout: ChannelLayout | None
@@ -118,11 +119,11 @@ class _Reader:
         if not np.isfinite(offsets).all():
             self.wrong(f"{prefix}offsets holds numbers that are not finite. Correct them.")
         slots = self.joints(f"{prefix}slots", count)
-        used = int(slots.max(initial=-1)) + 1 if layout is None else len(layout.slot_joints)
+        used = max(int(slots.max(initial=-1)) + 1, 0 if layout is None else len(layout.slot_joints))
         try:
             home = Skeleton(tuple(names), home_parents, offsets, slots, used, ends)
         except GmrError as error:
-            self.wrong(f"{error:.300}. The arrays are those of no skeleton.")
+            self.wrong(f"{error!s:.300}. Correct the arrays.")
         if layout is not None and not layout.fits(home):
             self.wrong(
                 f"{prefix}slots are not those of the channels in post. Leave out post, or correct them."
@@ -135,7 +136,7 @@ class _Reader:
         try:
             found = arranged(home, _core.Forest(home.topology, parents))
         except ValueError as error:
-            self.wrong(f"parents is no configuration of home_parents: {error:.300}.")
+            self.wrong(f"parents is no configuration of home_parents: {error!s:.300}.")
         slots = self.small("slots", ("I32",), (home.joint_count,))
         offsets = self.small("offsets", ("F64", "F32"), (home.joint_count, 3))
         for key, given, wanted in (("slots", slots, found.slots), ("offsets", offsets, found.offsets)):

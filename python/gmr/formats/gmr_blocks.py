@@ -162,9 +162,7 @@ class _Reader:
         word = self.text.take()
         kind = _KINDS.get(word.upper())
         if kind is None or (keyword == "End" and kind == End.JOINT):
-            what = (
-                f"{keyword} is followed by {shown(word)}. Write Site, or Tip for the end that a reader added."
-            )
+            what = f"{keyword} is followed by {shown(word)}. Write Site, or Tip (an end that a reader added)."
             raise self.text.failure(what, at=self.text.at - len(word), expected="Site or Tip", column=True)
         return kind
 

@@ -8,9 +8,11 @@ close ranks); the rows that a motion in another configuration was once read as; 
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gmr import _core
 from gmr.arrays import read_only
@@ -21,7 +23,7 @@ from gmr.frames import Pose, Rows
 from gmr.motion import Motion
 from gmr.skeleton import Skeleton
 
-__all__ = ["check", "identity_where_idle", "kept"]
+__all__ = ["check", "kept", "side_by_side"]
 
 _FORM = "a GMR file"
 
@@ -42,7 +44,7 @@ def kept(motion: Motion) -> Motion:
     pose = Pose(pose.rotations, pose.translated, pose.translations, layout)
     if layout is None:
         skeleton, pose = _in_used_slots(skeleton, pose)
-    return replace(motion, skeleton=skeleton, source=identity_where_idle(skeleton, pose), dropped=None)
+    return replace(motion, skeleton=skeleton, source=_identity_where_idle(skeleton, pose), dropped=None)
 
 
 def check(motion: Motion) -> None:
@@ -58,12 +60,12 @@ def check(motion: Motion) -> None:
     if isinstance(source, Rows):
         check_rows(motion, source.layout, source.values, _FORM)
         return
-    pose, frames = motion.pose, motion.frame_count
+    pose = motion.pose
     joints = {int(slot): joint for joint, slot in reversed(list(enumerate(skeleton.slots))) if slot >= 0}
     turned = [joints.get(slot, 0) for slot in range(skeleton.slot_count)]
     for values, whose, names in (
-        (pose.translations.reshape(frames, -1), pose.translated.tolist(), ("XYZ", "position")),
-        (pose.rotations.reshape(frames, -1), turned, ("XYZW", "quaternion")),
+        (side_by_side(pose.translations), pose.translated.tolist(), ("XYZ", "position")),
+        (side_by_side(pose.rotations), turned, ("XYZW", "quaternion")),
     ):
         if (found := first_not_finite(values)) is not None:
             frame, column = found
@@ -72,7 +74,12 @@ def check(motion: Motion) -> None:
             raise unsayable(motion, who, values[frame, column], frame, _FORM)
 
 
-def identity_where_idle(skeleton: Skeleton, pose: Pose) -> Pose:
+def side_by_side(array: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(F, ...) as (F, C): the numbers of a frame in a row."""
+    return array.reshape(len(array), math.prod(array.shape[1:]))
+
+
+def _identity_where_idle(skeleton: Skeleton, pose: Pose) -> Pose:
     """The pose with the identity in the slots that turn no bone."""
     idle = np.setdiff1d(np.arange(skeleton.slot_count), skeleton.slots)
     identity = np.array([0.0, 0.0, 0.0, 1.0])

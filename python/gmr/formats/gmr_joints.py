@@ -82,7 +82,7 @@ class Joints:
             bones = bones_at_home(trees, self.names)
             layout = self._layout(bones, adds_offset)
             ends = np.array([block.kind for block in self.blocks], np.uint8)
-            count = None if layout is None else len(layout.slot_joints)
+            count = 0 if layout is None else len(layout.slot_joints)
             skeleton = skeleton_of(trees, bones, self.names, ends, count)
         except TreesError as error:
             raise self.failure(error) from None

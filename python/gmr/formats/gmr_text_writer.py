@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from gmr import _core
 from gmr.formats.gmr_columns import Columns, columns_of_pose, columns_of_rows
-from gmr.formats.gmr_content import check, kept
+from gmr.formats.gmr_content import check, kept, side_by_side
 from gmr.formats.gmr_names import spelled_name, spelled_reference
 from gmr.formats.gmr_trees import Trees, trees_of
 from gmr.formats.nesting import file_order, nested_lines
@@ -54,7 +55,8 @@ def _chunks(motion: Motion, order: list[int], columns: Columns) -> Iterator[byte
     yield "\n".join(lines).encode()
     yield f"MOTION\nFrames: {motion.frame_count}\nFrame Time: {_numbers([motion.frame_time])}\n".encode()
     step = max(1, _CHUNK_VALUES // max(1, len(columns.sources)))
-    in_order = np.array_equal(columns.sources, np.arange(sum(_widths(motion))))
+    width = sum(math.prod(array.shape[1:]) for array in motion.source.numbers)
+    in_order = np.array_equal(columns.sources, np.arange(width))
     for start in range(0, motion.frame_count, step):
         values = _values(motion, slice(start, start + step))
         yield _core.format_rows(values if in_order else values.take(columns.sources, axis=1))
@@ -123,16 +125,9 @@ def _numbers(values: Sequence[float]) -> str:
     return _core.format_rows(np.array([values])).decode().rstrip("\n")
 
 
-def _widths(motion: Motion) -> list[int]:
-    """Numbers in a frame of each of the motion's arrays."""
-    source = motion.source
-    arrays = (source.values,) if isinstance(source, Rows) else (motion.translations, motion.rotations)
-    return [int(np.prod(array.shape[1:])) for array in arrays]
-
-
 def _values(motion: Motion, frames: slice) -> NDArray[np.float64]:
     """The numbers of some frames: the rows, or translations and rotations side by side."""
     if isinstance(motion.source, Rows):
         return np.ascontiguousarray(motion.source.values[frames])
     parts = [array[frames] for array in (motion.translations, motion.rotations)]
-    return np.concatenate([part.reshape(len(part), -1) for part in parts], axis=1)
+    return np.concatenate([side_by_side(part) for part in parts], axis=1)

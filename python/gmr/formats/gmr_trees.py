@@ -80,7 +80,7 @@ def trees_of(skeleton: Skeleton) -> Trees:
 
 
 def skeleton_of(
-    trees: Trees, bones: Bones, names: Sequence[str], ends: NDArray[np.uint8], slot_count: int | None
+    trees: Trees, bones: Bones, names: Sequence[str], ends: NDArray[np.uint8], least_slots: int
 ) -> Skeleton:
     """The skeleton that the trees are a configuration of, in that configuration.
 
@@ -89,14 +89,14 @@ def skeleton_of(
         bones: what :func:`bones_at_home` makes of them.
         names: (J,)
         ends: (J,) of :class:`gmr.skeleton.End`.
-        slot_count: slots at home; None: no more than turn a bone.
+        least_slots: slots at home at least, more where more turn a bone.
 
     Raises:
         TreesError: bones that are no siblings have the same turn.
         SkeletonError: these are no trees of a skeleton, in a way that only the whole shows.
     """
     slots = _home_slots(bones, names)
-    count = int(slots.max(initial=-1)) + 1 if slot_count is None else slot_count
+    count = max(int(slots.max(initial=-1)) + 1, least_slots)
     home = Skeleton(tuple(names), bones.parents, bones.offsets, slots, count, ends)
     if not trees.tops:
         return home

@@ -71,4 +71,5 @@ def _failure(text: Text, columns: int, channel: Callable[[int], str], fault: _Fa
         what = f"frame {fault.row} has {least}{count} numbers, but the joints have {columns} channels"
         return text.failure(f"{what}. Remove those too many, or correct CHANNELS.", at=fault.start)
     why = why_no_number(text.data[fault.start : fault.end])
-    return text.failure(f"{channel(fault.field)}: {why}", at=fault.start, column=True)
+    who = f"{channel(fault.field)}, frame {fault.row}"
+    return text.failure(f"{who}: {why}", at=fault.start, column=True)

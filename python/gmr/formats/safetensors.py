@@ -80,7 +80,8 @@ class Container:
 
 def looks_like_container(data: bytes | memoryview) -> bool:
     """Whether bytes begin as a container does and no text can."""
-    return bytes(data[4:9]) == b"\0\0\0\0{"
+    start = bytes(data[:9])
+    return start.endswith(b"{") and b"\0" in start[:8]
 
 
 def read_container(data: bytes | memoryview, name: str | None) -> Container:
