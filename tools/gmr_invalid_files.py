@@ -42,6 +42,11 @@ def broken_text() -> dict[str, tuple[str, str]]:
         "brace": (change("\t}\n}", "\t}\n"), "ROOT stands inside joint 'Shoulder'"),
         "too_many_braces": (change("}\nMOTION", "}\n}\nMOTION"), "there is one '}' too many"),
         "item": (change("TURN 0", "SPIN 0"), "'SPIN' stands inside joint 'Elbow'"),
+        "end_with_joint": (
+            change("JOINT Elbow", "End Site Elbow").replace("TURN 0", "JOINT x { OFFSET 0 0 0 }"),
+            "'JOINT' stands inside the End of joint 'Elbow'",
+        ),
+        "no_motion": (arm.split("MOTION")[0], "the file ends before MOTION"),
         "kind": (change("TURN 0", "KIND Bone"), "KIND is followed by 'Bone'"),
         "turn": (change("TURN 0", "TURN -1"), "has TURN followed by '-1'"),
         "turn_beyond": (change("TURN 0", "TURN 3"), "has TURN 3, but 3 joints"),
@@ -109,7 +114,9 @@ def broken_text() -> dict[str, tuple[str, str]]:
             change("UNIT 0.01", "POST replace").replace("TURN 1", "TURN 2").replace("TURN 0", "TURN 1"),
             "the TURNs are not those of the joints with POST",
         ),
-        "translated": (change("UNIT 0.01", "TRANSLATED 2 1 0"), "is in TRANSLATED but is not translated"),
+        "translated": (change("UNIT 0.01", "TRANSLATED 2 1 0"), "TRANSLATED must list all roots"),
+        "translated_beyond": (change("UNIT 0.01", "TRANSLATED 2 2 7"), "TRANSLATED must list all roots"),
+        "translated_again": (change("UNIT 0.01", "TRANSLATED 3 0 2 2"), "TRANSLATED must list all roots"),
         "translated_count": (change("UNIT 0.01", "TRANSLATED 3 1 0"), "TRANSLATED is no list"),
         "frames": (change("Frames: 2", "Frames: two"), "'Frames:' is followed by 'two'"),
         "not_a_number": (

@@ -7,7 +7,8 @@ The grammar, keywords in any case, tokens parted by any blanks and line ends::
     item    := "OFFSET" x y z | "NUMBER" n | "TURN" n | "KIND" kind
              | "LINK" reference x y z | "TOP" x y z
              | "CHANNELS" count channel* | "POST" count channel*
-             | "JOINT" name block | "End" kind [name] block
+             | "JOINT" name block | "End" kind [name] leaf
+    leaf    := "{" item* "}"  without JOINT and End
     kind    := "Joint" | "Site" | "Tip"
 
 The reader keeps its own stack, so that nesting has no limit but memory. Source: docs/gmr-format.md.
@@ -26,7 +27,11 @@ from gmr.formats.text import Text, named, shown
 from gmr.formats.vectors import Vector, take_vector
 from gmr.skeleton import End
 
-__all__ = ["Block", "Link", "read_blocks"]
+__all__ = ["LONGEST_LENT", "Block", "Link", "read_blocks"]
+
+
+LONGEST_LENT = 1000
+"""Characters of a name that an end without a name takes from its joint at most; ends are many, and short."""
 
 
 class Link(NamedTuple):
@@ -55,6 +60,8 @@ class Block:
     link: Link | None = None
     channels: tuple[str, ...] = ()
     post: tuple[str, ...] = ()
+    is_leaf: bool = False
+    """It may hold no further block."""
     items: set[bytes] = field(default_factory=set)
     """The keywords that it has."""
 
@@ -92,10 +99,9 @@ class _Reader:
             here = open_blocks[-1]
             word = self.text.take()
             keyword = word.upper()
-            if keyword == b"JOINT":
-                open_blocks.append(self.open_joint(here))
-            elif keyword == b"END":
-                open_blocks.append(self.open_end(here))
+            if keyword in (b"JOINT", b"END"):
+                self.check_inner(self.found[here], word)
+                open_blocks.append(self.open_joint(here) if keyword == b"JOINT" else self.open_end(here))
             elif keyword == b"}":
                 self.close(self.found[open_blocks.pop()])
             elif keyword in _ITEMS:
@@ -110,9 +116,19 @@ class _Reader:
     def open_end(self, parent: int) -> int:
         start = self.text.at
         kind = self.take_kind("End")
-        is_named = self.text.peek() != b"{"
-        name = take_name(self.text) if is_named else f"{self.found[parent].name}_end"
-        return self.open(Block(name, parent, kind, start))
+        if self.text.peek() != b"{":
+            return self.open(Block(take_name(self.text), parent, kind, start, is_leaf=True))
+        above = self.found[parent]
+        if len(above.name) > LONGEST_LENT:
+            what = f"an end of {above.title} has no name, and its joint's is too long to lend"
+            raise self.text.failure(f"{what}. Write a name after End {kind.name.title()}.", at=start)
+        return self.open(Block(f"{above.name}_end", parent, kind, start, is_leaf=True))
+
+    def check_inner(self, block: Block, word: bytes) -> None:
+        if block.is_leaf:
+            what = f"{shown(word)} stands inside the End of {block.title}"
+            mend = f"Write JOINT and KIND {block.kind.name.title()} in the place of End"
+            raise self.text.failure(f"{what}. {mend}.", at=self.text.at - len(word), column=True)
 
     def open(self, block: Block) -> int:
         if self.text.take() != b"{":
@@ -148,7 +164,7 @@ class _Reader:
             raise self.text.failure(what, at=at)
 
     def take_vector(self, block: Block, keyword: str) -> Vector:
-        return take_vector(self.text, keyword, lambda: block.title, _ITEMS | {b"JOINT", b"END", b"ROOT"})
+        return take_vector(self.text, keyword, lambda: block.title, _KEYWORDS)
 
     def take_count(self, block: Block, keyword: str, meaning: str) -> int:
         word = self.text.take()
@@ -195,4 +211,5 @@ class _Reader:
 
 
 _ITEMS = frozenset((b"OFFSET", b"NUMBER", b"TURN", b"KIND", b"LINK", b"TOP", b"CHANNELS", b"POST"))
+_KEYWORDS = _ITEMS | {b"JOINT", b"END", b"ROOT", b"MOTION"}
 _KINDS = {b"JOINT": End.JOINT, b"SITE": End.SITE, b"TIP": End.TIP}

@@ -20,7 +20,7 @@ from gmr.formats.text import named
 from gmr.frames import Pose
 from gmr.skeleton import Skeleton
 
-__all__ = ["Columns", "PoseColumns", "columns_of_pose", "columns_of_rows", "first_turned", "pose_of_columns"]
+__all__ = ["Columns", "PoseColumns", "columns_of_pose", "columns_of_rows", "moving_joints", "pose_of_columns"]
 
 QUATERNION = {"xquaternion": 0, "yquaternion": 1, "zquaternion": 2, "wquaternion": 3}
 """Component of each quaternion channel, by its name in lower case."""
@@ -35,7 +35,7 @@ class Columns(NamedTuple):
     """(C,) for each column of the file the one of the motion's numbers."""
 
 
-def first_turned(skeleton: Skeleton, order: Sequence[int]) -> dict[int, int]:
+def _first_turned(skeleton: Skeleton, order: Sequence[int]) -> dict[int, int]:
     """The joint at which each slot's rotation stands: the first in the file that it turns."""
     found: dict[int, int] = {}
     slots = skeleton.slots.tolist()
@@ -47,7 +47,7 @@ def first_turned(skeleton: Skeleton, order: Sequence[int]) -> dict[int, int]:
 
 def columns_of_rows(skeleton: Skeleton, layout: ChannelLayout, order: Sequence[int]) -> Columns:
     """Those of the rows of a post-rotation file: a joint's rotation stands at the first of its children."""
-    turning = {joint: slot for slot, joint in first_turned(skeleton, order).items()}
+    turning = {joint: slot for slot, joint in _first_turned(skeleton, order).items()}
     owners, owned = layout.slot_joints.tolist(), layout.owned_slots.tolist()
     used = set(turning.values())
     names: list[tuple[str, ...]] = [()] * skeleton.joint_count
@@ -70,7 +70,7 @@ def columns_of_rows(skeleton: Skeleton, layout: ChannelLayout, order: Sequence[i
 
 def columns_of_pose(skeleton: Skeleton, pose: Pose, order: Sequence[int]) -> Columns:
     """Those of translations (T x 3), then rotations (S x 4); of a slot that turns no bone just one, 0."""
-    turning = {joint: slot for slot, joint in first_turned(skeleton, order).items()}
+    turning = {joint: slot for slot, joint in _first_turned(skeleton, order).items()}
     idle = set(range(skeleton.slot_count)) - set(turning.values())
     owners = {} if pose.layout is None else {int(pose.layout.slot_joints[slot]): slot for slot in idle}
     moving = {joint: k for k, joint in enumerate(pose.translated.tolist())}
@@ -90,11 +90,20 @@ def columns_of_pose(skeleton: Skeleton, pose: Pose, order: Sequence[int]) -> Col
     return Columns(names, np.array(sources, np.intp))
 
 
+def moving_joints(skeleton: Skeleton, channels: Sequence[tuple[str, ...]]) -> list[int]:
+    """The joints with a translation, in their order: the roots, and those with position channels."""
+    return [
+        joint
+        for joint, names in enumerate(channels)
+        if skeleton.parents[joint] < 0 or any(name.lower() in POSITIONS for name in names)
+    ]
+
+
 def pose_of_columns(
     skeleton: Skeleton,
     channels: Sequence[tuple[str, ...]],
     order: Sequence[int],
-    translated: NDArray[np.int32] | None,
+    translated: Sequence[int],
     adds_offset: bool,
 ) -> PoseColumns:
     """How to read a pose from rows with these channels.
@@ -103,28 +112,18 @@ def pose_of_columns(
         skeleton: J joints.
         channels: (J,) of each joint.
         order: the joints in the order of their columns.
-        translated: the joints with a translation, in the motion's order; None: in the order of the joints.
+        translated: the :func:`moving_joints`, in the motion's order.
         adds_offset: position channels add to the offset instead of replacing it.
 
     Raises:
         TreesError: a joint has rotation channels that are not its own, or lacks channels (what no column
-            says would take memory for nothing), or ``translated`` are other joints.
+            says would take memory for nothing).
     """
-    turning = {joint: slot for slot, joint in first_turned(skeleton, order).items()}
-    moving = [
-        joint
-        for joint, names in enumerate(channels)
-        if skeleton.parents[joint] < 0 or any(name.lower() in POSITIONS for name in names)
-    ]
-    if translated is not None and sorted(translated.tolist()) != moving:
-        wrong = min(set(translated.tolist()) ^ set(moving))
-        raise TreesError(
-            wrong, "is in TRANSLATED but is not translated, or the other way round. Mend the list."
-        )
+    turning = {joint: slot for slot, joint in _first_turned(skeleton, order).items()}
     reading = PoseColumns(
         skeleton,
-        np.array(moving, np.int32) if translated is None else translated,
-        np.full((len(moving), 3), -1, np.int32),
+        np.array(translated, np.int32),
+        np.full((len(translated), 3), -1, np.int32),
         np.full((skeleton.slot_count, 3), -1, np.int32),
         np.zeros((skeleton.slot_count, 3), np.uint8),
         np.full((skeleton.slot_count, 4), -1, np.int32),

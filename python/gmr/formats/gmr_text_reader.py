@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gmr.arrays import read_only
 from gmr.channels import ChannelLayout
 from gmr.formats.gmr_blocks import read_blocks
-from gmr.formats.gmr_columns import Columns, PoseColumns, columns_of_rows, pose_of_columns
+from gmr.formats.gmr_columns import Columns, PoseColumns, columns_of_rows, moving_joints, pose_of_columns
 from gmr.formats.gmr_joints import Joints
 from gmr.formats.gmr_trees import TreesError
 from gmr.formats.numerals import number, why_no_number
@@ -37,7 +37,7 @@ def read_gmr_text(data: bytes, *, name: str | None = None, strict: bool = False)
         data: the file's bytes: UTF-8, or UTF-16 with a byte order mark.
         name: the file's name, for errors and for the motion.
         strict: raise where a warning would do: more or fewer rows than declared, a last row that is cut off,
-            no MOTION, a frame time of zero, quaternions that are not of length 1.
+            a frame time of zero, quaternions that are not of length 1.
 
     Raises:
         FormatError: the file cannot be read; the message says where, why, and what to do.
@@ -47,6 +47,10 @@ def read_gmr_text(data: bytes, *, name: str | None = None, strict: bool = False)
     joints = Joints.of(text, read_blocks(text))
     skeleton, layout = joints.skeleton(header.post)
     reading = _reading(joints, header, skeleton, layout)
+    if not text.peek():
+        raise text.failure(
+            "the file ends before MOTION. It may be cut off: write it again.", expected="MOTION"
+        )
     frames, frame_time = read_timing(text)
     rows = read_rows(text, sum(map(len, joints.channels)), joints.channel, frames)
     if isinstance(reading, Columns):
@@ -62,12 +66,20 @@ def _reading(
     joints: Joints, header: _Header, skeleton: Skeleton, layout: ChannelLayout | None
 ) -> Columns | PoseColumns:
     """How to read a frame: as a row of the post-rotation file where the columns are its, else as a pose."""
-    if layout is not None and skeleton.home is None and header.adds_offset == layout.adds_offset:
+    moving = moving_joints(skeleton, joints.channels)
+    if header.translated is not None and sorted(header.translated) != moving:
+        what = (
+            "TRANSLATED must list all roots and all joints with position channels, each once, and no others"
+        )
+        raise joints.text.failure(f"{what}. Correct the list.", at=header.at)
+    may_be_rows = layout is not None and skeleton.home is None and header.translated is None
+    if may_be_rows and layout is not None and header.adds_offset == layout.adds_offset:
         columns = columns_of_rows(skeleton, layout, joints.order)
         if _lower(columns.names) == _lower(joints.channels):
             return columns
     try:
-        return pose_of_columns(skeleton, joints.channels, joints.order, header.translated, header.adds_offset)
+        translated = moving if header.translated is None else header.translated
+        return pose_of_columns(skeleton, joints.channels, joints.order, translated, header.adds_offset)
     except TreesError as error:
         raise joints.failure(error) from None
 
@@ -102,7 +114,7 @@ class _Header(NamedTuple):
     post: bool | None
     """Whether the positions of the post-rotation file add to the offset; None: there was no such file."""
     adds_offset: bool
-    translated: NDArray[np.int32] | None
+    translated: list[int] | None
 
 
 def _read_header(text: Text) -> _Header:
@@ -162,7 +174,7 @@ def _adds_offset(text: Text, keyword: bytes) -> bool:
     return word.lower() == b"add"
 
 
-def _joint_numbers(text: Text) -> NDArray[np.int32]:
+def _joint_numbers(text: Text) -> list[int]:
     start = text.at
     words: list[bytes] = []
     while (word := text.peek()).isdigit() and len(word) <= 9:
@@ -171,4 +183,4 @@ def _joint_numbers(text: Text) -> NDArray[np.int32]:
     if not found or found[0] != len(found) - 1:
         what = "TRANSLATED is no list. Write how many joints, then the number of each."
         raise text.failure(what, at=start, expected="a count and numbers of joints")
-    return np.array(found[1:], np.int32)
+    return found[1:]

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr import _core
+from gmr.formats.gmr_blocks import LONGEST_LENT
 from gmr.formats.gmr_columns import Columns, columns_of_pose, columns_of_rows
 from gmr.formats.gmr_content import check, kept, side_by_side
 from gmr.formats.gmr_names import spelled_name, spelled_reference
@@ -90,7 +91,7 @@ def _blocks(motion: Motion, order: list[int], channels: Sequence[tuple[str, ...]
         if kind == End.JOINT or parent < 0 or skeleton.children[joint]:
             keyword = "JOINT" if parent >= 0 else "ROOT"
             return f"{keyword} {name}", [] if kind == End.JOINT else [f"KIND {_KINDS[kind]}"]
-        is_usual = names[joint] == f"{names[parent]}_end"
+        is_usual = len(names[parent]) <= LONGEST_LENT and names[joint] == f"{names[parent]}_end"
         return f"End {_KINDS[kind]}" + f" {name}" * (not is_usual), []
 
     def block(joint: int) -> tuple[str, list[str]]:
