@@ -256,3 +256,52 @@ def downwards(parents: list[int]) -> list[int]:
     for joint in order:
         order += [child for child, parent in enumerate(parents) if parent == joint]
     return order
+
+
+def configured_slots(
+    home_parents: list[int], home_slots: list[int], parents: list[int], least: int = 0
+) -> tuple[list[int], int]:
+    """Slots of a configuration, and how many: the section "The binary form"; ``least`` slots are at home."""
+    turns = [-1] * len(parents)
+    for joint in downwards(home_parents):
+        above = turns[home_parents[joint]] if home_parents[joint] >= 0 else -1
+        turns[joint] = home_slots[joint] if home_slots[joint] >= 0 else above
+    leads_from = {
+        slot: turns[home_parents[joint]] if home_parents[joint] >= 0 else -1
+        for joint, slot in enumerate(home_slots)
+        if slot >= 0
+    }
+    carried = [turns[bone_of(joint, home_parents, parents)] for joint in range(len(parents))]
+    groups: dict[tuple[int, int], list[int]] = {}
+    for joint, parent in enumerate(parents):
+        if carried[joint] != (carried[parent] if parent >= 0 else -1):
+            key = (parent, carried[joint]) if parent >= 0 else (-1 - joint, -1)
+            groups.setdefault(key, []).append(joint)
+    numbers: dict[tuple[int, int], int] = {}
+    for as_at_home in (True, False):
+        for key, (first, *_) in groups.items():
+            w, parent = carried[first], parents[first]
+            above = carried[parent] if parent >= 0 else -1
+            free = w != -1 and key not in numbers and w not in numbers.values()
+            if free and (not as_at_home or leads_from[w] == above):
+                numbers[key] = w
+    count = max(least, 1 + max(home_slots))
+    for key in groups:
+        if key not in numbers:
+            numbers[key] = count
+            count += 1
+    slots = [-1] * len(parents)
+    for key, joints in groups.items():
+        for joint in joints:
+            slots[joint] = numbers[key]
+    return slots, count
+
+
+def bone_of(joint: int, home_parents: list[int], parents: list[int]) -> int:
+    """The bone that a joint carries, by the joint in which it ends at home."""
+    parent = parents[joint]
+    if parent >= 0:
+        return parent if home_parents[parent] == joint else joint
+    while (above := home_parents[joint]) >= 0 and parents[above] == joint:
+        joint = above
+    return joint

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 import gmr
+import gmr_reference
 import strategies
 from gmr import ChannelLayout, FormatError, Motion, Skeleton
 from gmr.formats.bvh import read_bvh, write_bvh
@@ -271,3 +272,14 @@ def test_a_motion_without_joints_is_refused() -> None:
     for write in (write_gmr, write_gmrb):
         with pytest.raises(FormatError, match="a motion without joints"):
             write(motion)
+
+
+@given(walks_of(strange()))
+def test_slots_of_a_configuration_are_those_that_the_document_derives(walk: tuple[Motion, Motion]) -> None:
+    motion = kept(walk[1])
+    skeleton, home = motion.skeleton, motion.skeleton.home or motion.skeleton
+    slots, count = gmr_reference.configured_slots(
+        home.parents.tolist(), home.slots.tolist(), skeleton.parents.tolist()
+    )
+    assert skeleton.slots.tolist() == slots
+    assert skeleton.slot_count == count
