@@ -41,7 +41,7 @@ def refusal(data: bytes) -> FormatError:
         (
             "5 6 7",
             "5 6 1,5",
-            "walk.bvh:19:13: joint 'LeftLeg', Zrotation: '1,5' has a decimal comma. "
+            "walk.bvh:19:13: joint 'LeftLeg', Zrotation, frame 0: '1,5' has a decimal comma. "
             "Write a point, '1.5', here and everywhere.",
         ),
         (

@@ -294,3 +294,27 @@ def test_info_reads_standard_input(
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(walk_path.read_bytes())))
     assert run("info", "-") == 0
     assert "60 at 120 fps" in capsys.readouterr().out
+
+
+def test_a_motion_goes_through_gmr_files_unchanged(walk_path: Path, tmp_path: Path) -> None:
+    text, binary, out = (tmp_path / f"walk.{suffix}" for suffix in ("gmr", "gmrb", "bvh"))
+    for source, target in ((walk_path, text), (text, binary), (binary, out)):
+        assert run("convert", source, target) == 0
+    for file in (text, binary, out):
+        assert gmr.read(file) == gmr.read(walk_path)
+    assert run("convert", walk_path, tmp_path / "plain.bvh") == 0
+    assert out.read_bytes() == (tmp_path / "plain.bvh").read_bytes()
+
+
+def test_info_names_what_was_done_to_the_forest(walk_path: Path, tmp_path: Path, capsys: Captured) -> None:
+    moved = gmr.read(walk_path).split("LeftFoot").shift_root("Head")
+    gmr.write(moved, tmp_path / "moved.gmrb")
+    assert run("info", tmp_path / "moved.gmrb") == 0
+    page = capsys.readouterr().out
+    assert "LeftFoot cut from LeftLeg" in page
+    assert "the tree of Hips turned over onto Head" in page
+    assert run("info", "--json", tmp_path / "moved.gmrb") == 0
+    assert json.loads(capsys.readouterr().out)["configuration"] == [
+        "LeftFoot cut from LeftLeg",
+        "the tree of Hips turned over onto Head",
+    ]

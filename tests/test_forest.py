@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -22,11 +21,17 @@ from gmr.formats.bvh import write_bvh
 from gmr.frames import Pose, Rows
 from gmr.motion import Motion
 from gmr.partial import below
+from walks import walks_of
 
 CLOSE = 1e-12
 """Error in f64, as a share of the motion's reach."""
 
 motions = strategies.motions(max_joints=8) | strategies.poses(max_joints=8)
+
+
+def walks() -> st.SearchStrategy[tuple[Motion, Motion]]:
+    """A motion, and the same after some operations."""
+    return walks_of(motions)
 
 
 def reach(motion: Motion) -> float:
@@ -47,26 +52,6 @@ def assert_same_numbers(one: Motion, other: Motion) -> None:
     np.testing.assert_array_equal(one.translated, other.translated)
     np.testing.assert_allclose(one.rotations, other.rotations, rtol=0, atol=CLOSE)
     np.testing.assert_allclose(one.translations, other.translations, rtol=0, atol=CLOSE * 10 * reach(one))
-
-
-@st.composite
-def walks(draw: st.DrawFn) -> tuple[Motion, Motion]:
-    """A motion, and the same after some operations."""
-    motion = moved = draw(motions)
-    for _ in range(draw(st.integers(0, 5))):
-        moved = draw(st.sampled_from(choices(moved)))()
-    return motion, moved
-
-
-def choices(motion: Motion) -> list[Callable[[], Motion]]:
-    """All operations that can be done next."""
-    joints = range(motion.skeleton.joint_count)
-    roots = set(motion.skeleton.roots)
-    found: list[Callable[[], Motion]] = [partial(motion.shift_root, joint) for joint in joints]
-    found += [partial(motion.split, joint) for joint in joints if joint not in roots]
-    links = motion.skeleton.links
-    joinable = [root for root in roots if links[motion.skeleton.forest.top_of(root)] >= 0]
-    return [*found, *(partial(motion.join, root) for root in joinable)]
 
 
 def without_memory(motion: Motion) -> Motion:

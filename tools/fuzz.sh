@@ -11,6 +11,12 @@ mkdir -p fuzz/corpus/{bvh_reader,amc_reader,parse_rows,format_rows,bvh_bytes,amc
 
 .venv/bin/python fuzz/bvh_reader.py -dict=fuzz/bvh.dict "${limits[@]}" -max_len=4096 fuzz/corpus/bvh_reader fuzz/seeds/bvh
 .venv/bin/python fuzz/amc_reader.py -dict=fuzz/amc.dict "${limits[@]}" -max_len=4096 fuzz/corpus/amc_reader fuzz/seeds/amc
+mkdir -p fuzz/corpus/{bvh_reader,gmr_text,gmr_binary,parse_rows,format_rows,bvh_bytes}
+
+.venv/bin/python fuzz/bvh_reader.py -dict=fuzz/bvh.dict "${limits[@]}" -max_len=4096 fuzz/corpus/bvh_reader fuzz/seeds/bvh
+for form in text binary; do
+    .venv/bin/python "fuzz/gmr_${form}_reader.py" -dict=fuzz/gmr.dict "${limits[@]}" -max_len=4096 "fuzz/corpus/gmr_$form" tests/data/gmr/valid tests/data/gmr/invalid
+done
 cargo +nightly fuzz run parse_rows fuzz/corpus/parse_rows -- -dict=fuzz/bvh.dict "${limits[@]}" -max_len=4096
 cargo +nightly fuzz run format_rows fuzz/corpus/format_rows -- "${limits[@]}"
 cargo +nightly fuzz run bvh_bytes fuzz/corpus/bvh_bytes fuzz/seeds/bvh -- -dict=fuzz/bvh.dict "${limits[@]}" -max_len=4096

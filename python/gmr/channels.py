@@ -88,6 +88,11 @@ class ChannelLayout:
         counts = np.fromiter((len(channels) for channels in self.names), np.int32, len(self.names))
         return read_only(np.concatenate([np.zeros(1, np.int32), np.cumsum(counts, dtype=np.int32)]))
 
+    def channel(self, column: int) -> tuple[int, str]:
+        """The joint that a column moves, and the name of its channel."""
+        joint = int(np.searchsorted(self.starts, column, side="right")) - 1
+        return joint, self.names[joint][column - int(self.starts[joint])]
+
     @cached_property
     def column_axes(self) -> NDArray[np.uint8]:
         """(C,) uint8: 0, 1, 2 for x, y, z."""

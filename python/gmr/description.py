@@ -14,7 +14,7 @@ from gmr.dof_rows import DofRows
 from gmr.guesses import UnitGuess, UpGuess, guess_body
 from gmr.listing import listed
 from gmr.resample import nominal_fps
-from gmr.skeleton import End
+from gmr.skeleton import End, Skeleton
 from gmr.tpose import leading_rest_frames
 
 if TYPE_CHECKING:
@@ -38,6 +38,9 @@ class Description:
     ends: int
     """End sites, which are joints too."""
     roots: tuple[str, ...]
+    configuration: tuple[str, ...]
+    """How the trees differ from those at home: a sentence for each soft link, and for each that is turned
+    over."""
     dummies: tuple[str, ...]
     channels: int
     """Numbers in a row."""
@@ -73,6 +76,7 @@ def describe(motion: Motion, warnings: Sequence[str] = ()) -> Description:
         joints=skeleton.names,
         ends=int((skeleton.ends == End.SITE).sum()),
         roots=motion.roots,
+        configuration=tuple(_configuration(skeleton)),
         dummies=motion.dummies,
         channels=sum(len(channels) for channels in named),
         orders=dict(Counter(" ".join(channels) for channels in named if channels).most_common()),
@@ -95,6 +99,18 @@ def _channel_names(motion: Motion) -> tuple[tuple[str, ...], ...]:
         joints = motion.source.acclaim.channels
         return tuple(tuple(f"{name[1].upper()}{_NAMES[name[0]]}" for name in names) for names in joints)
     return motion.layout.names if motion.layout else ()
+
+
+def _configuration(skeleton: Skeleton) -> list[str]:
+    """What was done to each tree since home, in the order of the roots."""
+    names, links, found = skeleton.names, skeleton.links, []
+    for root in skeleton.roots:
+        top = skeleton.forest.top_of(root)
+        if links[top] >= 0:
+            found.append(f"{names[top]} cut from {names[links[top]]}")
+        if top != root:
+            found.append(f"the tree of {names[top]} turned over onto {names[root]}")
+    return found
 
 
 def _oddities(motion: Motion, rest: int, up: UpGuess | None) -> list[str]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
 from gmr.bench import amc_text, bvh_text, forward_kinematics, search, trials
+from gmr.bench import bvh_text, forward_kinematics, gmr_files, search, trials
 from gmr.bench.harness import Contest, Row, one_core, run_contest
 from gmr.bench.inputs import LARGE_FRAME_COUNT
 
@@ -17,6 +18,7 @@ CLAIMS: Final[dict[str, Callable[[int], Iterator[Contest]]]] = {
     "bvh-folder": bvh_text.load_folder,
     "amc-load": amc_text.load,
     "amc-write": amc_text.write,
+    "gmr-open": gmr_files.open_large,
     "fk": forward_kinematics.positions,
     "fk-rows": forward_kinematics.positions_from_rows,
     "fk-frames": forward_kinematics.frame_cost,

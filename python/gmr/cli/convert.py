@@ -81,6 +81,7 @@ def convert(
       gmr convert cmu.bvh metres.bvh --from-unit cmu --unit m
       gmr convert walk.bvh lean.bvh --drop-dummies
       gmr convert walk.bvh walk.amc
+      gmr convert walk.bvh walk.gmr         GMR's own format: text, or binary as .gmrb
       gmr convert - - --fps 30 < walk.bvh > walk30.bvh
     """
     if from_unit is not None and unit is None:

@@ -26,6 +26,7 @@ def page(path: str, of: Description) -> str:
         ("frames", _frames(of)),
         ("joints", _joints(of)),
         ("roots", listed(of.roots, FEW) or "none"),
+        ("moved", listed(of.configuration, FEW)),
         ("dummies", listed(of.dummies, 12) or "none"),
         ("channels", f"{of.channels} a frame: {_channels(of)}"),
         ("moving", f"position channels below the root: {listed(of.moving, FEW)}" if of.moving else ""),

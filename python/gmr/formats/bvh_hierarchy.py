@@ -16,14 +16,12 @@ import re
 from dataclasses import dataclass, field
 
 from gmr.errors import FormatError
-from gmr.formats.bvh_channels import read_channels
-from gmr.formats.numerals import number, why_no_number
+from gmr.formats.channel_lists import read_channels
 from gmr.formats.text import Text, named, shown
+from gmr.formats.vectors import Vector, take_vector
 from gmr.skeleton import End
 
 __all__ = ["Hierarchy", "read_hierarchy"]
-
-Vector = tuple[float, float, float]
 
 
 @dataclass(slots=True)
@@ -131,27 +129,7 @@ class _Reader:
         self.found.offsets[block.joint] = self.take_vector(block.joint)
 
     def take_vector(self, joint: int) -> Vector:
-        start = self.text.at
-        match = self.text.take_match(_VECTOR)
-        if match is not None:
-            x, y, z = (number(token) for token in match.groups())
-            if x is not None and y is not None and z is not None:
-                return x, y, z
-        self.text.at = start
-        raise self.no_vector(joint)
-
-    def no_vector(self, joint: int) -> FormatError:
-        """The error for what stands where three numbers should."""
-        for count in range(3):
-            end = self.text.at
-            word = self.text.take()
-            if word.upper() in _WORDS:
-                what = f"OFFSET has {count} number{'s' * (count != 1)}. Write three: x, y and z."
-                return self.text.failure(f"{self.title(joint)}: {what}", at=end, expected="three numbers")
-            if number(word) is None:
-                what = f"{self.title(joint)}, OFFSET: {why_no_number(word)}"
-                return self.text.failure(what, at=self.text.at - len(word), expected="a number", column=True)
-        raise AssertionError("three numbers are a vector")
+        return take_vector(self.text, "OFFSET", lambda: self.title(joint), _KEYWORDS)
 
     def read_channels(self, block: _Block) -> None:
         at = self.text.at
@@ -212,5 +190,4 @@ class _Reader:
 
 
 _CONTROL = re.compile(rb"[\x00-\x1f\x7f]")
-_VECTOR = re.compile(rb"\s*+([^\s{}]++)\s++([^\s{}]++)\s++([^\s{}]++)")
-_WORDS = frozenset((b"", b"{", b"}", b"OFFSET", b"CHANNELS", b"JOINT", b"END", b"ROOT", b"MOTION"))
+_KEYWORDS = frozenset((b"OFFSET", b"CHANNELS", b"JOINT", b"END", b"ROOT", b"MOTION"))

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from typing import Literal
 
-from gmr.formats.bvh_rows import read_rows
-from gmr.formats.bvh_shape import read_shape
-from gmr.formats.numerals import number, why_no_number
-from gmr.formats.text import Text, shown
+from gmr.formats.bvh_shape import Shape, read_shape
+from gmr.formats.rows import read_rows
+from gmr.formats.text import Text, named
+from gmr.formats.timing import read_timing
 from gmr.motion import Motion
 
 __all__ = ["read_bvh"]
-
-_FRAMES = re.compile(rb"\s*+Frames\s*+:?[^\S\r\n]*+(\S*)", re.IGNORECASE)
-_FRAME_TIME = re.compile(rb"\s*+Frame\s*+Time\s*+:?[^\S\r\n]*+(\S*)", re.IGNORECASE)
-_MOST_FRAMES = 10**18
-"""A count of more digits is taken for this; no file holds as many."""
 
 
 def read_bvh(
@@ -48,61 +42,12 @@ def read_bvh(
         raise ValueError(f"positions={positions!r} is not known; use 'replace' or 'add'")
     text = Text(bytes(data), name=name, strict=strict)
     shape = read_shape(text, adds_offset=positions == "add")
-    frames, frame_time = _read_timing(text)
-    rows = read_rows(text, shape, frames)
+    frames, frame_time = read_timing(text)
+    rows = read_rows(text, shape.layout.column_count, lambda column: _channel(shape, column), frames)
     return Motion.from_rows(shape.skeleton, shape.layout, rows, frame_time, name=name)
 
 
-def _read_timing(text: Text) -> tuple[int, float]:
-    """Reads from MOTION to the frame time: the declared count, and seconds."""
-    word = text.take()
-    if not word:
-        text.odd("the file has no MOTION; read as a skeleton without frames. Export it again for its frames.")
-        return 0, 0.0
-    if word.upper() != b"MOTION":
-        what = f"{shown(word)} follows the last joint. Write MOTION there, or ROOT for another tree."
-        if word == b"}":
-            what = "there is one '}' too many. Remove it, or write the '{' that is missing."
-        raise text.failure(what, at=text.at - len(word), expected="MOTION", column=True)
-    frames, frame_time = _frame_count(text), _frame_time(text)
-    if frame_time == 0 and frames > 1:
-        text.odd(
-            "the frame time is 0, so that the frames have no duration. Write seconds after 'Frame Time:'."
-        )
-    return frames, frame_time
-
-
-def _frame_count(text: Text) -> int:
-    match = text.take_match(_FRAMES)
-    if match is None:
-        what = f"MOTION is followed by {_next(text)}. Write 'Frames:' and the number of frames."
-        raise text.failure(what, expected="Frames: <count>")
-    found = match[1]
-    if not found.isdigit():
-        what = shown(found) if found else "nothing"
-        what = f"'Frames:' is followed by {what}. Write how many frames there are, a whole number."
-        raise text.failure(what, expected="a whole number")
-    # Python refuses to convert thousands of digits.
-    digits = found.lstrip(b"0")
-    return int(digits or b"0") if len(digits) <= 18 else _MOST_FRAMES
-
-
-def _frame_time(text: Text) -> float:
-    match = text.take_match(_FRAME_TIME)
-    if match is None or not match[1]:
-        what = (
-            f"the frame count is followed by {_next(text)}. Write 'Frame Time:' and the seconds of a frame."
-        )
-        raise text.failure(what, expected="Frame Time: <seconds>")
-    found = match[1]
-    value = number(found)
-    if value is None or value < 0:
-        why = (
-            why_no_number(found) if value is None else f"{shown(found)} is negative. Write 0 seconds or more."
-        )
-        raise text.failure(f"Frame Time: {why}", at=text.at - len(found), expected="seconds", column=True)
-    return value
-
-
-def _next(text: Text) -> str:
-    return shown(text.peek()) if text.peek() else "the end of the file"
+def _channel(shape: Shape, column: int) -> str:
+    """The joint and channel that a column belongs to."""
+    joint, channel = shape.layout.channel(column)
+    return f"joint {named(shape.skeleton.names[joint])}, {channel}"

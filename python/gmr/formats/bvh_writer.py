@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from gmr import _core
 from gmr.channels import ChannelLayout
 from gmr.errors import FormatError
+from gmr.formats.finite import check_offsets, check_rows
+from gmr.formats.nesting import file_order, nested_lines
 from gmr.motion import Motion
 from gmr.skeleton import End, Skeleton
 
 __all__ = ["bvh_chunks", "write_bvh"]
 
 _CHUNK_VALUES = 1 << 18
-_DEEPEST_INDENT = 32
-"""Deeper blocks are indented no further: a chain of joints would make the file grow with its square."""
 
 
 def write_bvh(motion: Motion) -> bytes:
@@ -40,9 +40,10 @@ def bvh_chunks(motion: Motion) -> Iterator[bytes]:
     motion = motion.to_post_rotation()
     skeleton, rows = motion.skeleton, motion.rows
     layout = motion.layout or ChannelLayout.standard(skeleton, motion.translated)
-    order = _file_order(skeleton)
+    order = file_order(skeleton)
     _check_names(motion, order)
-    _check_values(motion, layout, rows)
+    check_offsets(motion, skeleton, "BVH")
+    check_rows(motion, layout, rows, "BVH")
     rows = _in_file_order(layout, order, rows)
     return _chunks(skeleton, layout, order, rows, motion.frame_time)
 
@@ -62,17 +63,6 @@ def _chunks(
         yield _core.format_rows(rows[start : start + step])
 
 
-def _file_order(skeleton: Skeleton) -> list[int]:
-    """Joints as the file nests them: each before its children, siblings as they are listed."""
-    order: list[int] = []
-    waiting = list(reversed(skeleton.roots))
-    while waiting:
-        joint = waiting.pop()
-        order.append(joint)
-        waiting.extend(reversed(skeleton.children[joint]))
-    return order
-
-
 def _in_file_order(layout: ChannelLayout, order: list[int], rows: NDArray[np.float64]) -> NDArray[np.float64]:
     """The rows with their columns in the order in which the file lists their joints."""
     starts = layout.starts
@@ -85,33 +75,16 @@ def _in_file_order(layout: ChannelLayout, order: list[int], rows: NDArray[np.flo
 def _hierarchy(skeleton: Skeleton, layout: ChannelLayout, order: list[int]) -> bytes:
     offsets = _core.format_rows(skeleton.offsets).decode().splitlines()
     parents, ends = skeleton.parents.tolist(), skeleton.ends.tolist()
-    site, tip = int(End.SITE), int(End.TIP)
-    lines = ["HIERARCHY"]
-    open_joints: list[int] = []
 
-    def close_to(joint: int) -> None:
-        while open_joints and open_joints[-1] != joint:
-            open_joints.pop()
-            lines.append(_indent(len(open_joints)) + "}")
+    def block(joint: int) -> tuple[str, list[str]]:
+        if ends[joint] == End.SITE:
+            return "End Site", [f"OFFSET {offsets[joint]}"]
+        keyword, channels = "JOINT" if parents[joint] >= 0 else "ROOT", layout.names[joint]
+        listed = " ".join([f"CHANNELS {len(channels)}", *channels])
+        return f"{keyword} {skeleton.names[joint]}".rstrip(" "), [f"OFFSET {offsets[joint]}", listed]
 
-    for joint in order:
-        if ends[joint] == tip:
-            continue
-        close_to(parents[joint])
-        tabs = _indent(len(open_joints))
-        keyword = "End Site" if ends[joint] == site else "JOINT" if parents[joint] >= 0 else "ROOT"
-        name = "" if ends[joint] == site else skeleton.names[joint]
-        lines += [f"{tabs}{keyword} {name}".rstrip(" "), f"{tabs}{{", f"{tabs}\tOFFSET {offsets[joint]}"]
-        if ends[joint] != site:
-            channels = layout.names[joint]
-            lines.append(" ".join([f"{tabs}\tCHANNELS {len(channels)}", *channels]))
-        open_joints.append(joint)
-    close_to(-1)
-    return ("\n".join(lines) + "\n").encode()
-
-
-def _indent(depth: int) -> str:
-    return "\t" * min(depth, _DEEPEST_INDENT)
+    written = [joint for joint in order if ends[joint] != End.TIP]
+    return "\n".join(["HIERARCHY", *nested_lines(written, parents, block), ""]).encode()
 
 
 def _check_names(motion: Motion, order: list[int]) -> None:
@@ -124,20 +97,3 @@ def _check_names(motion: Motion, order: list[int]) -> None:
                 f"the name {name!r} of joint {joint} cannot stand in a BVH file: braces, control characters "
             )
             raise FormatError(what + "and blanks at its ends do not read back. Rename it.", file=motion.name)
-
-
-def _check_values(motion: Motion, layout: ChannelLayout, rows: NDArray[np.float64]) -> None:
-    """Raises for a value that is no decimal number."""
-    names, offsets = motion.skeleton.names, motion.skeleton.offsets
-    for joint in np.flatnonzero(~np.isfinite(offsets).all(axis=1)).tolist():
-        what = f"the offset of joint '{names[joint]}' is {offsets[joint].tolist()}, which BVH cannot say"
-        raise FormatError(f"{what}. Correct it.", file=motion.name)
-    if np.isfinite(rows).all():
-        return
-    frame, column = np.argwhere(~np.isfinite(rows))[0].tolist()
-    joint = int(np.searchsorted(layout.starts, column, side="right")) - 1
-    channel = layout.names[joint][column - int(layout.starts[joint])]
-    what = (
-        f"joint '{names[joint]}', {channel} is {rows[frame, column]} in frame {frame}, which BVH cannot say"
-    )
-    raise FormatError(f"{what}. Fill the gap, or cut the frame out.", file=motion.name)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Literal
 
 from gmr.errors import FormatError
+from gmr.formats.mapping import mapped
 from gmr.formats.registry import Format, format_of_file, format_of_text, named_format
 
 if TYPE_CHECKING:
@@ -34,8 +35,9 @@ def read(
 
     Args:
         source: a path; or the contents of a file as bytes; or an open file, text or binary.
-        format: "bvh", "amc" or "asf"; told by the suffix of a path, and by the first bytes of anything else,
-            where left out.
+        format: "bvh", "amc", "asf", "gmr" or "gmrb"; told by the suffix of a path, and by the first bytes of
+            anything else, where left out. GMR's text and binary files are told apart by their bytes, whatever
+            the suffix.
         positions: BVH: whether position channels "replace" a joint's OFFSET (as in Blender) or "add" to it.
         asf: AMC: its skeleton, a path or the bytes of a file; where left out, the one beside (07_01.asf or
             07.asf for 07_01.amc, or the only one in the folder).
@@ -82,12 +84,12 @@ def read_with(
         FormatError: as :func:`read`; or ``all_taken`` is asked for and the format does not know an option.
     """
     chosen = None if format is None else named_format(format)
-    name, data = _contents(source, any_suffix=chosen is not None)
+    name, data = _contents(source, chosen)
     if not data:
         raise FormatError("the file is empty, it holds no motion; export it again", file=name)
     if chosen is None:
         is_path = isinstance(source, str | os.PathLike)
-        chosen = format_of_file(name or "") if is_path else format_of_text(data, name)
+        chosen = format_of_file(name or "") if is_path else format_of_text(bytes(data), name)
     return chosen.read(data, name=name, strict=strict, **_taken(chosen, options, name, all_taken))
 
 
@@ -100,8 +102,8 @@ def _taken(chosen: Format, options: dict[str, Any], name: str | None, all_taken:
     return {option: value for option, value in options.items() if option in chosen.options}
 
 
-def _contents(source: Source, any_suffix: bool) -> tuple[str | None, bytes]:
-    """What the source is called, and all its bytes."""
+def _contents(source: Source, chosen: Format | None) -> tuple[str | None, bytes | memoryview]:
+    """What the source is called, and all its bytes, or its map in memory where the format takes that."""
     if isinstance(source, bytes | bytearray | memoryview):
         return None, bytes(source)
     if isinstance(source, str | os.PathLike):
@@ -110,9 +112,9 @@ def _contents(source: Source, any_suffix: bool) -> tuple[str | None, bytes]:
         path = Path(source)
         if not str(source):
             raise FormatError("an empty text names no file; give a path", file="''")
-        if not any_suffix and path.is_file():
-            format_of_file(str(path))
-        return str(path), _file_contents(path)
+        if chosen is None and path.is_file():
+            chosen = format_of_file(str(path))
+        return str(path), _file_contents(path, chosen is not None and chosen.is_mapped)
     if not hasattr(source, "read"):
         raise TypeError(f"a motion is read from a path, bytes or an open file, not from {source!r:.60}")
     data = source.read()
@@ -120,10 +122,10 @@ def _contents(source: Source, any_suffix: bool) -> tuple[str | None, bytes]:
     return name if isinstance(name, str) else None, data.encode() if isinstance(data, str) else data
 
 
-def _file_contents(path: Path) -> bytes:
+def _file_contents(path: Path, is_mapped: bool) -> bytes | memoryview:
     """All bytes of a file, or a sentence why there are none."""
     try:
-        return path.read_bytes()
+        return mapped(path) if is_mapped else path.read_bytes()
     except FileNotFoundError:
         if path.is_symlink():
             what = (

@@ -26,13 +26,15 @@ class Format:
         name: as people call it.
         suffixes: of its files, in lower case.
         begins: what its files begin with, any of these: words of text in upper case, after comments that
-            begin with ``#``, or the first bytes of a binary file.
+            begin with ``#``, or bytes of a binary file.
         module: the module that knows it, imported when first needed.
         reader: its function ``(data: bytes, *, name, strict, **options) -> Motion``.
         writer: its function ``(motion) -> bytes`` or pieces of them.
         options: what the reader can be told besides ``name`` and ``strict``.
         beside: suffix and writer of a second file without which its files say nothing.
         serving: its function ``(names) -> names``: of the files of a folder, those that are part of others.
+        begins_at: the byte at which ``begins`` stands, for a binary file; None: it is text.
+        is_mapped: the reader takes the map of a file in memory as well as its bytes.
     """
 
     name: str
@@ -44,17 +46,30 @@ class Format:
     options: tuple[str, ...] = ()
     beside: tuple[str, str] | None = None
     serving: str | None = None
+    begins_at: int | None = None
+    is_mapped: bool = False
 
-    def read(self, data: bytes, **options: Any) -> Motion:
+    @property
+    def is_text(self) -> bool:
+        """Whether its files are text."""
+        return self.begins_at is None
+
+    def is_begun_by(self, data: bytes, text: bytes) -> bool:
+        """Whether a file may be one of these, by its first bytes and by the same as text."""
+        if self.begins_at is not None:
+            return data.startswith(self.begins, self.begins_at)
+        return text.upper().startswith(self.begins)
+
+    def read(self, data: bytes | memoryview, **options: Any) -> Motion:
         """The motion in ``data``."""
         read: Callable[..., Motion] = getattr(import_module(self.module), self.reader)
         return read(data, **options)
 
-    def write(self, motion: Motion) -> Iterable[bytes]:
+    def write(self, motion: Motion) -> Iterable[bytes | memoryview]:
         """The pieces, in order, of a file that holds ``motion``."""
         return self._pieces(self.writer, motion)
 
-    def write_beside(self, motion: Motion) -> Iterable[bytes]:
+    def write_beside(self, motion: Motion) -> Iterable[bytes | memoryview]:
         """The pieces, in order, of the second file."""
         assert self.beside is not None
         return self._pieces(self.beside[1], motion)
@@ -73,9 +88,10 @@ class Format:
         serving: Callable[[Iterable[str]], set[str]] = getattr(import_module(self.module), self.serving)
         return serving(names)
 
-    def _pieces(self, writer: str, motion: Motion) -> Iterable[bytes]:
-        write: Callable[[Motion], bytes | Iterable[bytes]] = getattr(import_module(self.module), writer)
-        made = write(motion)
+    def _pieces(self, writer: str, motion: Motion) -> Iterable[bytes | memoryview]:
+        make: Callable[[Motion], bytes | Iterable[bytes | memoryview]]
+        make = getattr(import_module(self.module), writer)
+        made = make(motion)
         return [made] if isinstance(made, bytes) else made
 
 
@@ -98,6 +114,11 @@ FORMATS: Final = (
         "ASF", (".asf",), (b":VERSION", b":NAME", b":UNITS", b":DOCUMENTATION", b":ROOT", b":BONEDATA"),
         "gmr.formats.asf_amc", "read_asf", "asf_chunks",
         serving="serving_asf",
+    ),
+    Format("GMR", (".gmr",), (b"GMR",), "gmr.formats.gmr", "read_gmr", "gmr_chunks", is_mapped=True),
+    Format(
+        "GMRB", (".gmrb",), (b'{"__metadata__":',), "gmr.formats.gmr", "read_gmr", "gmrb_pieces",
+        begins_at=8, is_mapped=True,
     ),
 )  # fmt: skip
 
@@ -150,7 +171,7 @@ def format_of_text(data: bytes, file: str | None) -> Format:
         start = start.decode("utf-16", "replace").encode()
     start = _COMMENTS.sub(b"", start.removeprefix(codecs.BOM_UTF8))
     for known in FORMATS:
-        if data.startswith(known.begins) or start.upper().startswith(known.begins):
+        if known.is_begun_by(data, start):
             return known
     begins = ", ".join(f"'{known.begins[0].decode('latin-1')}' ({known.name})" for known in FORMATS)
     raise FormatError(

@@ -30,7 +30,8 @@ def write(motion: Motion, target: Target, format: str | None = None) -> None:
         motion: what was read as rows is written with the very same values, names and channels.
         target: a path, or a file open for writing, text or binary. With a path to an .amc its .asf is written
             beside it, both or none; an .asf alone, and an .amc into an open file, hold half of a motion.
-        format: "bvh", "amc" or "asf"; told by the suffix where left out, BVH for an open file.
+        format: "bvh", "amc", "asf", "gmr" (text) or "gmrb" (binary); told by the suffix where left out, BVH
+            for an open file.
 
     Raises:
         GmrError: the file cannot be written; what was there is untouched.
@@ -51,9 +52,11 @@ def write(motion: Motion, target: Target, format: str | None = None) -> None:
     if not hasattr(target, "write"):
         raise TypeError(f"a motion is written to a path or an open file, not to {target!r:.60}")
     chosen = FORMATS[0] if format is None else named_format(format)
+    if isinstance(target, io.TextIOBase) and not chosen.is_text:
+        raise GmrError(f"{chosen.name} is no text; open the file for bytes, with mode 'wb'")
     for piece in chosen.write(motion):
         if isinstance(target, io.TextIOBase):
-            target.write(piece.decode())
+            target.write(bytes(piece).decode())
         else:
             write_all(cast(IO[bytes], target), piece)
 

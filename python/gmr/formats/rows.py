@@ -1,7 +1,8 @@
-"""The rows of numbers of a BVH file, and what to say where they are wrong."""
+"""The rows of numbers of a text file's frames, and what to say where they are wrong."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -9,9 +10,8 @@ from numpy.typing import NDArray
 
 from gmr import _core
 from gmr.errors import FormatError
-from gmr.formats.bvh_shape import Shape
 from gmr.formats.numerals import why_no_number
-from gmr.formats.text import Text, named
+from gmr.formats.text import Text
 
 __all__ = ["read_rows"]
 
@@ -19,19 +19,24 @@ _MOST_COUNTED = 1 << 16
 """Bytes of a line in which superfluous numbers are counted."""
 
 
-def read_rows(text: Text, shape: Shape, declared: int) -> NDArray[np.float64]:
+def read_rows(text: Text, columns: int, channel: Callable[[int], str], declared: int) -> NDArray[np.float64]:
     """Reads (F, C) rows, read-only: as many as are declared, or those that are there.
+
+    Args:
+        text: at the first row.
+        columns: C.
+        channel: what a column is, for errors: its joint and the channel's name.
+        declared: how many rows the file says there are.
 
     Raises:
         FormatError: a row is wrong; its line, joint and channel are named. Frames count from 0.
     """
-    columns = shape.layout.column_count
     rows, end, found = _core.parse_rows(text.data, text.at, columns, min(declared, len(text.data)))
     rows.flags.writeable = False
     fault = _Fault(*found) if found else None
     plural = " is" if declared == 1 else "s are"
     if fault and fault.kind != "cut":
-        raise _failure(text, shape, fault)
+        raise _failure(text, columns, channel, fault)
     if fault:
         what = f"the file ends inside frame {fault.row}, after {fault.field} of its {columns} numbers"
         text.odd(f"{what}; the frame is left out. Export the file again for the rest.", at=fault.start)
@@ -54,12 +59,11 @@ class _Fault(NamedTuple):
     end: int
 
 
-def _failure(text: Text, shape: Shape, fault: _Fault) -> FormatError:
-    columns = shape.layout.column_count
+def _failure(text: Text, columns: int, channel: Callable[[int], str], fault: _Fault) -> FormatError:
     if fault.kind == "row too short":
         what = f"frame {fault.row} has {fault.field} of {columns} numbers; the next is missing"
         mend = "Write each frame on a line of its own."
-        return text.failure(f"{_channel(shape, fault.field)}: {what}. {mend}", at=fault.start)
+        return text.failure(f"{channel(fault.field)}: {what}. {mend}", at=fault.start)
     if fault.kind == "row too long":
         end = min(fault.end, fault.start + _MOST_COUNTED)
         count = columns + len(text.data[fault.start : end].split())
@@ -67,11 +71,5 @@ def _failure(text: Text, shape: Shape, fault: _Fault) -> FormatError:
         what = f"frame {fault.row} has {least}{count} numbers, but the joints have {columns} channels"
         return text.failure(f"{what}. Remove those too many, or correct CHANNELS.", at=fault.start)
     why = why_no_number(text.data[fault.start : fault.end])
-    return text.failure(f"{_channel(shape, fault.field)}: {why}", at=fault.start, column=True)
-
-
-def _channel(shape: Shape, column: int) -> str:
-    """The joint and channel that a column belongs to."""
-    joint = int(np.searchsorted(shape.layout.starts, column, side="right")) - 1
-    channel = shape.layout.names[joint][column - int(shape.layout.starts[joint])]
-    return f"joint {named(shape.skeleton.names[joint])}, {channel}"
+    who = f"{channel(fault.field)}, frame {fault.row}"
+    return text.failure(f"{who}: {why}", at=fault.start, column=True)
