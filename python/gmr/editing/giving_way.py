@@ -14,6 +14,8 @@ from gmr.editing.limbs import Limb
 from gmr.frames import Pose
 from gmr.motion import Motion
 from gmr.quaternions import about, multiply, rotated
+from gmr.skeleton import Skeleton
+from gmr.tpose import leading_rest_frames
 
 __all__ = ["HeldFoot", "lifted_heel", "lowered_hips"]
 
@@ -39,19 +41,30 @@ class HeldFoot:
 
     Args:
         limb: the leg.
-        pivot: (F, 3) place of the joint that is held.
+        joint: the one that is held, the ankle or one below it.
+        pivot: (F, 3) its place.
         end: (F, 3) place of the ankle.
         turn: (F, 4) turn in the world of what hangs on the ankle.
+        toes: (F, 4) turn in the world of what hangs on the joint that is held.
     """
 
     limb: Limb
+    joint: int
     pivot: Floats
     end: Floats
     turn: Floats
+    toes: Floats
+
+    def turns(self, skeleton: Skeleton) -> dict[int, Floats]:
+        """The turns by joint, for :func:`gmr.editing.moved_roots`."""
+        if self.joint == self.limb.end:
+            return {self.joint: self.turn}
+        below = [child for child in skeleton.children[self.joint] if skeleton.slots[child] >= 0]
+        return {self.limb.end: self.turn, **dict.fromkeys(below, self.toes)}
 
 
 def lifted_heel(motion: Motion, foot: HeldFoot, blend: int) -> tuple[HeldFoot, Floats]:
-    """The foot turned about the joint that is held, as far as the leg needs to reach its ankle.
+    """The foot turned about the ball, as far as the leg needs to reach its ankle; the toes stay as they are.
 
     In the triangle of the pivot, the ankle and the hip the leg's length gives the angle at the pivot by the
     law of cosines; the foot turns by what is lacking, up to 25 degrees, smoothed so that it never lacks.
@@ -67,7 +80,7 @@ def lifted_heel(motion: Motion, foot: HeldFoot, blend: int) -> tuple[HeldFoot, F
     angle = np.arccos(np.clip((to_end * to_top).sum(axis=1) / sides * 2, -1, 1))
     wanted = np.arccos(np.clip((a * a + b * b - longest * longest) / sides, -1, 1))
     lacking = np.where(is_short, np.clip(angle - wanted, 0, _MOST_LIFT), 0.0)
-    lift = smooth_above(lacking, blend)
+    lift = _smooth(motion, lacking, blend)
     normal = np.cross(to_end, to_top)
     size = _length(normal)[:, None]
     turn = about(normal / np.where(size > 0, size, 1.0), np.where(size[:, 0] > 0, lift, 0.0))
@@ -95,7 +108,7 @@ def lowered_hips(
         needed = height - np.sqrt(np.maximum(longest * longest - beside, 0))
         is_short = _length(apart) > longest * (1 + 1e-9)
         lacking = np.maximum(lacking, np.where(is_short, np.clip(needed, 0, _MOST_SINKING * length), 0))
-    sunk = smooth_above(lacking, round(_SINKING * motion.fps) if motion.frame_time else 0)
+    sunk = _smooth(motion, lacking, round(_SINKING * motion.fps) if motion.frame_time else 0)
     columns = {joint: k for k, joint in enumerate(loose.translated.tolist())}
     roots = {loose.skeleton.forest.root_of(foot.limb.top) for foot in feet}
     translations = loose.translations.copy()
@@ -104,6 +117,12 @@ def lowered_hips(
     pose = loose.pose
     source = Pose(pose.rotations, pose.translated, read_only(translations), pose.layout)
     return replace(loose, source=source), sunk
+
+
+def _smooth(motion: Motion, lacking: Floats, width: int) -> Floats:
+    """A smooth curve above what is lacking in the recording; 0 in what a converter put before it."""
+    lead = leading_rest_frames(motion)
+    return np.concatenate([np.zeros(lead), smooth_above(lacking[lead:], width)])
 
 
 def _leg(motion: Motion, limb: Limb) -> tuple[Floats, Floats, Floats]:

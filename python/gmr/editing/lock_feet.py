@@ -139,7 +139,10 @@ def lock_feet(
             lift = np.maximum(lift, turned)
         feet.append(foot)
     places = {foot.limb.end: foot.end for foot in feet}
-    loose = moved_roots(cut_at(motion, places), places, {foot.limb.end: foot.turn for foot in feet})
+    cut = cut_at(motion, places)
+    loose = moved_roots(
+        cut, places, {k: turn for foot in feet for k, turn in foot.turns(cut.skeleton).items()}
+    )
     if too_short in ("hips", "both"):
         loose, sunk = lowered_hips(loose, motion, feet, up)
     edited = rejoin(loose, motion, limbs=[foot.limb for foot in feet], unit=held.scene.unit)
@@ -165,7 +168,7 @@ def _held(
     moves[lead:] = eased(moves[lead:], intervals, blend)
     turn = about(up, moves[:, 3])
     pivot = at + moves[:, :3]
-    return HeldFoot(limb, pivot, pivot + rotated(turn, end - at), turn)
+    return HeldFoot(limb, joints[0], pivot, pivot + rotated(turn, end - at), turn, turn)
 
 
 def _headings(motion: Motion, end: int, up: Floats) -> Floats:

@@ -62,18 +62,20 @@ def cut_at(motion: Motion, ends: Iterable[Joint]) -> Motion:
 def moved_roots(
     loose: Motion, places: Mapping[int, Floats], turns: Mapping[int, Floats] | None = None
 ) -> Motion:
-    """The motion with some of its roots put elsewhere, and turned along with all that hangs on them.
+    """The motion with some of its roots put elsewhere, and some of its bones turned in the world.
 
     Args:
         loose: any.
         places: for each root, by index, (F, 3) its new place in the world, file units.
-        turns: for each root (F, 4) a turn in the world that comes after the rotation that it has.
+        turns: for joints, by index, (F, 4) what comes after the rotation that the bone ending in each has; a
+            root turns all that hangs on it, as every bone does but for those that have a turn of their own.
     """
     columns = {joint: k for k, joint in enumerate(loose.translated.tolist())}
     translations = loose.translations.copy()
     for root, place in places.items():
         translations[:, columns[root]] = place
-    rotations = turned(loose, {int(loose.skeleton.slots[root]): turn for root, turn in (turns or {}).items()})
+    slots = loose.skeleton.slots
+    rotations = turned(loose, {int(slots[joint]): turn for joint, turn in (turns or {}).items()})
     pose = Pose(read_only(rotations), loose.translated, read_only(translations), loose.layout)
     return replace(loose, source=pose, dropped=_without_rows(loose))
 

@@ -62,11 +62,12 @@ def two_bone(top: Floats, middle: Floats, end: Floats, target: Floats, hinge: Fl
     normal = _normal(upper, lower, old, hinge)
     turned = rotated(_shortest(old, new, normal), normal)
 
-    # Heron's formula as a product, which stays exact where the limb is nearly straight.
-    area = np.sqrt(np.maximum((l1 + l2 + d) * (l1 + l2 - d) * (d + l1 - l2) * (d - l1 + l2), 0)) / 4
+    # Heron's formula and the foot of the height as products: exact for a limb that is straight or folded.
+    sum_, difference = l1 + l2, l1 - l2
+    product = (sum_ + d) * (sum_ - d) * (d + difference) * (d - difference)
     safe = np.where(d > 0, d, 1.0)
-    along = np.where(d > 0, (l1 * l1 - l2 * l2 + d * d) / (2 * safe), 0.0)
-    beside = np.where(d > 0, 2 * area / safe, l1)
+    along = np.where(d > 0, difference / safe * sum_ / 2 + d / 2, 0.0)
+    beside = np.where(d > 0, np.sqrt(np.maximum(product, 0)) / (2 * safe), l1)
     to_middle = along[..., None] * new + beside[..., None] * np.cross(new, turned)
     to_end = d[..., None] * new
 
