@@ -44,14 +44,16 @@ LEGS = {
 def bone_lengths(motion: Motion) -> Floats:
     places = motion.positions(dtype=float)
     whole = np.flatnonzero(motion.skeleton.parents >= 0)
-    return np.linalg.norm(places[:, whole] - places[:, motion.skeleton.parents[whole]], axis=2)
+    return np.asarray(
+        np.linalg.norm(places[:, whole] - places[:, motion.skeleton.parents[whole]], axis=2), np.float64
+    )
 
 
 def steps_deg(motion: Motion) -> Floats:
     """(F - 1, S) by how much each joint turns from a frame to the next, the added T-pose left out."""
     rotations = motion.rotations[3:]
     cosines = np.abs((rotations[1:] * rotations[:-1]).sum(axis=-1))
-    return np.degrees(2 * np.arccos(np.minimum(cosines, 1)))
+    return np.asarray(np.degrees(2 * np.arccos(np.minimum(cosines, 1))), np.float64)
 
 
 def near_contacts(edited: Edited[LockReport], blends: int) -> NDArray[np.bool_]:
@@ -183,7 +185,7 @@ def test_locking_what_is_locked_changes_nothing() -> None:
     once = lock_feet(WALK)
     twice = lock_feet(once.motion, once.report.contacts, hold_heading=False, blend=0)
     places = [edited.motion.positions(dtype=float) for edited in (once, twice)]
-    np.testing.assert_allclose(*places, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(places[0], places[1], rtol=0, atol=1e-6)
 
 
 def test_without_contacts_the_motion_comes_back() -> None:
@@ -292,12 +294,12 @@ def refusals() -> dict[str, tuple[Callable[[], object], type[Exception], str]]:
         "unknown": (lambda: contacts(WALK, ["LeftToe"]), SkeletonError, "no joint 'LeftToe'; did you mean"),
         "no feet": (lambda: contacts(nobody()), DatasetError, "no feet found: .*Say which are hips"),
         "no unit": (
-            lambda: contacts(nobody().with_unit(None), ["dot"]), GmrError, "declare it first: motion.with_unit",
+            lambda: contacts(nobody().with_unit(None), ["dot"]), GmrError, "declare it first",
         ),
         "named twice": (lambda: contacts(WALK, ["Head", "Head"]), SkeletonError, "named twice"),
         "thresholds": (lambda: contacts(WALK, height=(0.1, 0.05)), GmrError, "not above the second"),
         "least": (lambda: contacts(WALK, least=-1), GmrError, "cannot be shorter than 0 seconds"),
-        "one leg": (lambda: lock_feet(WALK, both), SkeletonError, "moved by the limb that ends in 'LeftFoot'"),
+        "one leg": (lambda: lock_feet(WALK, both), SkeletonError, "moved by the limb that ends in"),
         "length": (lambda: lock_feet(WALK[:100], found), GmrError, "of 317 frames, the motion has 100"),
         "overlap": (lambda: lock_feet(WALK, twice), GmrError, "overlap: frames 10 to 29 and 20 to 39"),
         "beyond": (lambda: lock_feet(WALK, beyond), GmrError, "not within the 317 frames"),

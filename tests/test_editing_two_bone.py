@@ -154,7 +154,7 @@ def test_what_holds_in_intervals_is_led_on_with_a_continuous_slope(
         near[max(start - blend, 0) : end + blend] = True
     np.testing.assert_array_equal(found[inside], curve[inside])
     assert (found[~near] == 0).all()
-    # From value v and slope s a cubic of n frames turns aside by (2 s + 3 v / n) / n in its first frame at most.
+    # From value v and slope s a cubic of n frames leaves by (2 s + 3 v / n) / n at most in its first frame.
     end = first + length
     if gap > 2 * blend and blend > 1:
         slope = curve[end - 1] - curve[end - 2]

@@ -17,7 +17,7 @@ from gmr.forest import carried, home
 from gmr.frames import Pose, Rows
 from gmr.motion import Motion
 
-__all__ = ["ROUNDING", "nearest_angles", "restored"]
+__all__ = ["ROUNDING", "continued_angles", "nearest_angles", "restored"]
 
 Floats = NDArray[np.float64]
 
@@ -34,8 +34,8 @@ def restored(edited: Motion, before: Motion) -> Motion:
 
     Returns:
         ``before`` itself where nothing was changed. Else a motion that holds rows of channels where it did:
-        each angle that changed is, of all that name its rotation, the one nearest to what it was, so that
-        what was continuous stays so. A joint that turned and has fewer than three rotation channels gets
+        of all angles that name a rotation that changed, those are taken that go on best from what the file
+        has before and after. A joint that turned and has fewer than three rotation channels gets
         three.
     """
     old = home(before)
@@ -104,19 +104,57 @@ def _rows(old: Motion, pose: Pose, turned: NDArray[np.bool_], moved: NDArray[np.
     layout, was = cast(ChannelLayout, old.layout), old.rows
     values = was.copy()
     for slot in np.flatnonzero(turned.any(axis=0)).tolist():
-        frames = np.flatnonzero(turned[:, slot])
-        cells = np.ix_(frames, layout.rotation_columns[slot])
-        axes = np.ascontiguousarray(layout.rotation_axes[slot][None])
-        rotations = np.ascontiguousarray(pose.rotations[frames, slot][:, None])
-        angles = np.asarray(_core.quaternions_to_euler(rotations, axes))[:, 0]
-        values[cells] = nearest_angles(angles, was[cells], axes[0].tolist())
-    columns = dict(zip(layout.translated.tolist(), layout.translation_columns, strict=True))
+        columns, axes = layout.rotation_columns[slot], layout.rotation_axes[slot]
+        values[:, columns] = continued_angles(was[:, columns], pose.rotations[:, slot], turned[:, slot], axes)
+    places = dict(zip(layout.translated.tolist(), layout.translation_columns, strict=True))
     for k in np.flatnonzero(moved.any(axis=0)).tolist():
         joint = int(pose.translated[k])
-        frames, axes = np.flatnonzero(moved[:, k]), np.flatnonzero(columns[joint] >= 0)
+        frames, axes = np.flatnonzero(moved[:, k]), np.flatnonzero(places[joint] >= 0)
         base = old.skeleton.offsets[joint, axes] if layout.adds_offset else 0.0
-        values[np.ix_(frames, columns[joint][axes])] = pose.translations[:, k][np.ix_(frames, axes)] - base
+        values[np.ix_(frames, places[joint][axes])] = pose.translations[:, k][np.ix_(frames, axes)] - base
     return Rows(read_only(values), layout)
+
+
+def continued_angles(
+    was: Floats, rotations: Floats, turned: NDArray[np.bool_], axes: NDArray[np.uint8]
+) -> Floats:
+    """Angles of a joint in which some frames turn otherwise than they did, without needless jumps.
+
+    In each run of such frames the angles either go on from frame to frame, from those that the first one had,
+    or are each the nearest to what they were; whichever jumps less, the frames before and after counted.
+
+    Args:
+        was: (F, 3) degrees.
+        rotations: (F, 4) xyzw, as they are now.
+        turned: (F,) the frames that turn otherwise.
+        axes: (3,) 0, 1 or 2, in composing order.
+    """
+    found = was.copy()
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], turned, [False]]).astype(np.int8)))
+    for first, end in edges.reshape(-1, 2).tolist():
+        run = np.ascontiguousarray(rotations[first:end, None])
+        going_on = np.asarray(_core.quaternions_to_euler(run, np.ascontiguousarray(axes[None])))[:, 0]
+        ways = [
+            _alike(going_on, was[max(first - 1, 0)], axes),
+            nearest_angles(going_on, was[first:end], axes.tolist()),
+        ]
+        around = slice(max(first - 1, 0), first), slice(end, end + 1)
+        steps = [np.diff(np.concatenate([was[around[0]], way, was[around[1]]]), axis=0) for way in ways]
+        found[first:end] = min(zip(ways, steps, strict=True), key=lambda one: np.abs(one[1]).max(initial=0))[
+            0
+        ]
+    return found
+
+
+def _alike(angles: Floats, to: Floats, axes: NDArray[np.uint8]) -> Floats:
+    """(n, 3) angles that go on from frame to frame, all named in that of their ways that is nearest to ``to``
+    in the first frame."""
+    (start,) = nearest_angles(angles[:1], to[None], axes.tolist())
+    shift = start - angles[0]
+    if np.abs(shift - 360 * np.round(shift / 360)).max() < 1e-6:
+        return np.asarray(angles + 360 * np.round(shift / 360), np.float64)
+    other = _other_name(angles, axes.tolist())
+    return np.asarray(other + 360 * np.round((start - other[0]) / 360), np.float64)
 
 
 def nearest_angles(angles: Floats, to: Floats, axes: Sequence[int]) -> Floats:
@@ -130,9 +168,13 @@ def nearest_angles(angles: Floats, to: Floats, axes: Sequence[int]) -> Floats:
         to: (F, 3) degrees.
         axes: 0, 1 or 2 for each of the three.
     """
-    mirrored = -angles[:, 1] if axes[0] == axes[2] else 180 - angles[:, 1]
-    other = np.stack([angles[:, 0] + 180, mirrored, angles[:, 2] + 180], axis=1)
-    candidates = np.stack([angles, other])
+    candidates = np.stack([angles, _other_name(angles, axes)])
     candidates = candidates + 360 * np.round((to - candidates) / 360)
     chosen = np.abs(candidates - to).max(axis=-1).argmin(axis=0)
     return np.asarray(candidates[chosen, np.arange(len(angles))], np.float64)
+
+
+def _other_name(angles: Floats, axes: Sequence[int]) -> Floats:
+    """The same rotations by the other three angles."""
+    mirrored = -angles[:, 1] if axes[0] == axes[2] else 180 - angles[:, 1]
+    return np.stack([angles[:, 0] + 180, mirrored, angles[:, 2] + 180], axis=1)
