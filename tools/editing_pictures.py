@@ -288,19 +288,19 @@ def warped(folder: Path) -> None:
     motion = gmr.read(demo_folder() / "07_01.bvh")
     bent = warp_path(motion, turn_deg=70)
     held = warp_path(motion, turn_deg=70, lock=True)
-    page = Page(960, 640)
+    page = Page(960, 676)
     title(page, 24, 28, "warp_path", "07_01, a straight walk, sent around a bend of 70 degrees")
     rows = ((motion, bent.report.before, "before"), (bent.motion, bent.report.path, "turn_deg=70"),
             (held.motion, held.report.path, "turn_deg=70, lock=True"))  # fmt: skip
     slides = [warp_path(motion).report.slide_mm, bent.report.slide_mm, held.report.lock.slide_after_mm]  # type: ignore[union-attr]
-    spots = ((24, 100, 62), (24, 346, 150), (500, 346, 150))
+    spots = ((24, 164, 62), (24, 410, 190), (500, 410, 190))
     for (x, y, above), (clip, path, words), slid in zip(spots, rows, slides, strict=True):
         page.text(x, above, words)
         page.text(
             x, above + 18, f"a foot slides {slid.mean():.0f} mm a step", 'font-size="12" fill="#5a5f66"'
         )
         footprints(page, clip, bent.report.contacts, path, Camera(ALONG, 112, (x + 290, y), np.pi / 2))
-    camera = Camera(ALONG, 112, (480, 592), 0.35)
+    camera = Camera(ALONG, 112, (480, 666), 0.35)
     places = metres(held.motion)
     page.line(camera(np.insert(held.report.path.ground * UNIT, 1, 0.0, axis=1)), FAINT, 2)
     for frame in range(310, 3, -34):

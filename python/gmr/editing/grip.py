@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -110,10 +110,11 @@ def grip(
     spacing: float | None = None,
     frames: tuple[int, int] | None = None,
     blend: float = 0.2,
+    hold_rotation: bool = False,
 ) -> Edited[GripReport]:
     """The motion with both hands on a bar, always the same distance apart.
 
-    Each hand keeps its rotation in the world and its arm is bent to reach the bar.
+    Each arm is bent to reach the bar, and its hand turns along with the forearm.
 
     Args:
         motion: any.
@@ -124,6 +125,7 @@ def grip(
         spacing: file units from hand to hand along the bar; as the motion has it on average by default.
         frames: (first, one past last) in which the bar is held; all by default.
         blend: seconds before and after, in which the hands are led to the bar and back.
+        hold_rotation: the hands keep their rotation in the world instead.
 
     Returns:
         The motion, equal to the bit in the frames that neither gripping nor blending touch. A bar out of
@@ -137,7 +139,9 @@ def grip(
     first, end = _frames(motion, frames)
     indices = motion.skeleton.indices(joints).tolist()
     limbs = [limb_that_moves(motion.skeleton, joint) for joint in indices]
-    if len(indices) != 2 or limbs[0].end == limbs[1].end:
+    if not hold_rotation:
+        limbs = [replace(limb, end=joint) for limb, joint in zip(limbs, indices, strict=True)]
+    if len(indices) != 2 or limbs[0].middle == limbs[1].middle:
         raise SkeletonError(f"joints={tuple(joints)}: name two joints, one of each arm")
     hands = motion.positions(dtype=np.float64, joints=indices)
     point, along = _carried_bar(hands, motion, first, end) if bar is None else bar.over(count)
@@ -151,7 +155,7 @@ def grip(
     ends = [limb.end for limb in limbs]
     wrists = motion.positions(dtype=np.float64, joints=ends) + moves
     loose = moved_roots(cut_at(motion, ends), dict(zip(ends, np.moveaxis(wrists, 1, 0), strict=True)))
-    edited = rejoin(loose, motion, limbs=limbs)
+    edited = rejoin(loose, motion, limbs=limbs, hold_rotation=hold_rotation)
     names = motion.skeleton.names[indices[0]], motion.skeleton.names[indices[1]]
     ordered = sorted(edited.report.stretch, key=lambda one: ends.index(motion.skeleton.index(one.joint)))
     report = GripReport(names, width, np.linalg.norm(moves, axis=2), tuple(ordered))

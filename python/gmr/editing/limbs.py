@@ -14,7 +14,7 @@ from gmr.body.naming import side_and_part
 from gmr.errors import SkeletonError
 from gmr.skeleton import Skeleton
 
-__all__ = ["Limb", "limb_of", "limb_that_moves", "path_down"]
+__all__ = ["Limb", "feet_of", "limb_of", "limb_that_moves", "path_down"]
 
 Joint = str | int | np.integer[Any]
 
@@ -81,13 +81,19 @@ def limb_that_moves(skeleton: Skeleton, joint: Joint, roles: Mapping[str, int] |
     at_home = skeleton if skeleton.home is None else skeleton.home
     index = at_home.index(joint)
     known = _roles(at_home, roles)
-    feet = {known[role] for role in ("left_foot", "right_foot") if role in known}
+    feet = feet_of(at_home, known)
     here = index
     while here >= 0:
         if here in feet or _WRIST.fullmatch(side_and_part(at_home.names[here])[1]):
             return limb_of(at_home, here, known)
         here = int(at_home.parents[here])
     return limb_of(at_home, index, known)
+
+
+def feet_of(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> set[int]:
+    """The ankles, as far as they are known."""
+    known = _roles(skeleton, roles)
+    return {known[role] for role in ("left_foot", "right_foot") if role in known}
 
 
 def path_down(skeleton: Skeleton, top: int, bottom: int) -> list[int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gmr.editing.easing import blend_weights
 from gmr.editing.edited import Edited, Stretch
-from gmr.editing.limbs import Limb, limb_that_moves
+from gmr.editing.limbs import Limb, feet_of, limb_that_moves
 from gmr.editing.rejoin import cut_at, moved_roots, rejoin
 from gmr.errors import GmrError
 from gmr.motion import Motion
@@ -58,13 +58,13 @@ def reach(
     window: float = 0.5,
     *,
     hold: float = 0.0,
+    hold_rotation: bool | None = None,
     limb: Limb | None = None,
 ) -> Edited[ReachReport]:
     """The motion with a joint's path bent so that it passes through a point.
 
     The joint is moved by the whole way to the point in one frame and less and less before and after, without
-    a jump of speed or acceleration; the two bones above bend, and what hangs on the limb's end keeps its
-    rotation in the world.
+    a jump of speed or acceleration; the two bones above bend.
 
     Args:
         motion: any.
@@ -73,6 +73,8 @@ def reach(
         frame: in which the joint is to be there; a negative one counts from the end.
         window: seconds before and after over which the path is bent.
         hold: seconds before and after in which the whole move is kept.
+        hold_rotation: what hangs on the limb's end keeps its rotation in the world; else it turns along with
+            the limb's lower bone. None: feet keep it, all others turn along.
         limb: that moves the joint, where :func:`gmr.editing.limb_of` does not find it.
 
     Returns:
@@ -91,12 +93,21 @@ def reach(
         raise GmrError(f"window={window}, hold={hold}: give seconds, 0 or more")
     index = motion.skeleton.index(joint)
     chosen = limb or limb_that_moves(motion.skeleton, index)
+    if hold_rotation is None:
+        hold_rotation = chosen.end in feet_of(motion.skeleton)
+    if limb is None and not hold_rotation:
+        chosen = replace(chosen, end=index)
     path, end = np.moveaxis(motion.positions(dtype=np.float64, joints=[index, chosen.end]), 1, 0)
     held, blend = (round(seconds * motion.fps) if motion.frame_time else 0 for seconds in (hold, window))
     weights = blend_weights(motion.frame_count, at - held, at + held + 1, blend)
     way = point - path[at]
     places = end + weights[:, None] * way
-    edited = rejoin(moved_roots(cut_at(motion, [chosen.end]), {chosen.end: places}), motion, limbs=[chosen])
+    edited = rejoin(
+        moved_roots(cut_at(motion, [chosen.end]), {chosen.end: places}),
+        motion,
+        limbs=[chosen],
+        hold_rotation=hold_rotation,
+    )
     (stretch,) = edited.report.stretch
     there = edited.motion[at : at + 1].positions(dtype=np.float64, joints=[index])[0, 0]
     missed, moved = (float(np.linalg.norm(vector)) for vector in (point - there, way))

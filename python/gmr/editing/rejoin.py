@@ -1,8 +1,8 @@
 """Trees joined again after an edit, with every bone as long as it was.
 
 Cut a limb at its end, move the end as a root wherever it shall go, and join it again: the two bones above are
-bent so that the limb ends where its root was put, as far as they reach. What hangs on the end keeps its world
-rotation. Every edit of a limb in this package is made so.
+bent so that the limb ends where its root was put, as far as they reach. Every edit of a limb in this
+package is made so.
 """
 
 from __future__ import annotations
@@ -81,7 +81,12 @@ def moved_roots(
 
 
 def rejoin(
-    loose: Motion, before: Motion, *, limbs: Iterable[Limb] = (), unit: Unit | None = None
+    loose: Motion,
+    before: Motion,
+    *,
+    limbs: Iterable[Limb] = (),
+    hold_rotation: bool = True,
+    unit: Unit | None = None,
 ) -> Edited[RejoinReport]:
     """The motion with all roots joined that ``before`` did not have, by bones as long as in ``before``.
 
@@ -90,6 +95,8 @@ def rejoin(
             turned; other roots may have been moved too.
         before: the motion before the edit.
         limbs: of the joints that were cut off, where :func:`gmr.editing.limbs.limb_of` does not find them.
+        hold_rotation: what hangs on an end keeps the rotation in the world that its root has, as a foot on
+            the ground does; else it turns along with the bone above, as a hand does with its forearm.
         unit: what the report measures in; that of ``before``, or guessed, where not given.
 
     Returns:
@@ -116,6 +123,8 @@ def rejoin(
     for limb, target in zip(chosen, np.moveaxis(targets, 1, 0), strict=True):
         solved = _solved(whole, limb, target)
         turns |= _turns_of(whole.skeleton, limb, solved)
+        if hold_rotation:
+            turns |= _held_below(whole.skeleton, limb.end)
         stretch.append(Stretch(kept.skeleton.names[limb.end], read_only(solved.missed), measured))
     bent = replace(whole, source=replace(whole.pose, rotations=read_only(turned(whole, turns))))
     return Edited(restored(bent, before), RejoinReport(tuple(stretch)))
@@ -167,7 +176,7 @@ def _solved(motion: Motion, limb: Limb, target: Floats) -> TwoBone:
 
 
 def _turns_of(skeleton: Skeleton, limb: Limb, solved: TwoBone) -> dict[int, Floats]:
-    """The solved turns by slot; what hangs on the end is held in the world."""
+    """The solved turns by slot."""
     upper = path_down(skeleton, limb.top, limb.middle)
     lower = path_down(skeleton, limb.middle, limb.end)
     turns = {}
@@ -179,7 +188,7 @@ def _turns_of(skeleton: Skeleton, limb: Limb, solved: TwoBone) -> dict[int, Floa
                 f"of '{skeleton.names[limb.end]}' cannot be bent there; name other joints: Limb.of(...)"
             )
         turns[slot] = turn
-    return turns | _held_below(skeleton, limb.end)
+    return turns
 
 
 def _held_below(skeleton: Skeleton, end: int) -> dict[int, Floats]:
