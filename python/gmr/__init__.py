@@ -6,7 +6,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from gmr import evaluation, matching
+    from gmr import editing, evaluation, matching
     from gmr._core import __version__
     from gmr.bone_tails import Bones, bones
     from gmr.channels import ChannelLayout
@@ -41,6 +41,7 @@ __all__ = [
     "__version__",
     "bones",
     "concatenate",
+    "editing",
     "evaluate",
     "evaluation",
     "forward_kinematics",
@@ -73,7 +74,7 @@ _HOMES = {
     "read_folder": "gmr.formats",
     "write": "gmr.formats",
 }
-_MODULES = frozenset({"evaluation", "matching"})
+_MODULES = frozenset({"editing", "evaluation", "matching"})
 
 
 def __getattr__(name: str) -> "Any":

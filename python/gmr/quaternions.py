@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["conjugate", "from_matrix", "matrices", "multiply"]
+__all__ = ["IDENTITY", "about", "conjugate", "from_matrix", "matrices", "multiply", "part_of", "rotated"]
+
+IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 
 
 def multiply(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -26,6 +28,28 @@ def conjugate(a: NDArray[np.float64]) -> NDArray[np.float64]:
     """(..., 4) the inverse rotations of unit quaternions."""
     inverse: NDArray[np.float64] = a * np.array([-1.0, -1.0, -1.0, 1.0])
     return inverse
+
+
+def rotated(a: NDArray[np.float64], vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(..., 3) vectors turned by (..., 4) unit quaternions: ``v + 2 q x (q x v + w v)``."""
+    axis, w = a[..., :3], a[..., 3:]
+    found: NDArray[np.float64] = vectors + 2 * np.cross(axis, np.cross(axis, vectors) + w * vectors)
+    return found
+
+
+def about(axis: NDArray[np.float64], angle: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(..., 4) turns by (...,) angles in radians about (..., 3) unit axes."""
+    half = np.asarray(angle)[..., None] / 2
+    axis = np.broadcast_to(axis, (*half.shape[:-1], 3))
+    return np.concatenate([axis * np.sin(half), np.cos(half)], axis=-1)
+
+
+def part_of(a: NDArray[np.float64], share: float) -> NDArray[np.float64]:
+    """(..., 4) ``share`` of each turn, the short way round: ``slerp(1, a, share)``."""
+    size = np.linalg.norm(a[..., :3], axis=-1)
+    angle = 2 * np.arctan2(size, np.abs(a[..., 3]))
+    axis = a[..., :3] * np.where(a[..., 3:] < 0, -1.0, 1.0)
+    return about(axis / np.where(size > 0, size, 1.0)[..., None], share * angle)
 
 
 def matrices(a: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
