@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
-from gmr.bench import amc_text, bvh_text, forward_kinematics, search, trials
-from gmr.bench import bvh_text, forward_kinematics, gmr_files, search, trials
+from gmr.bench import amc_text, bvh_text, forward_kinematics, gmr_files, search, trials
 from gmr.bench.harness import Contest, Row, one_core, run_contest
 from gmr.bench.inputs import LARGE_FRAME_COUNT
 
