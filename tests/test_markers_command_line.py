@@ -46,6 +46,12 @@ def test_info_tells_what_is_recorded_and_which_set_fits(walk: Path) -> None:
     assert "odd" not in done.output
 
 
+def test_standard_input_may_be_a_recording(walk: Path) -> None:
+    done = CliRunner().invoke(command, ["info", "-"], input=walk.read_bytes())
+    assert done.exit_code == 0, done.output
+    assert "markers   56" in done.output
+
+
 def test_info_names_gaps_flickers_and_exchanges(tmp_path: Path) -> None:
     markers = hidden(hidden(exchanged(worn(), "L_FLE", "L_FME", 40, 60), "CV7", 40, 10), "CV7", 52, 10)
     done = run("info", recorded(tmp_path / "faults.c3d", markers))

@@ -220,6 +220,10 @@ class Markers:
         """The same numbers, declared to be in this unit ("m", "mm", ... or metres per unit)."""
         return replace(self, unit=None if unit is None else metres_per_unit(unit))
 
+    def with_name(self, name: str | None) -> Markers:
+        """The same recording under another name."""
+        return replace(self, name=name)
+
     def with_up(self, axis: str = "+Y", *, was: str | None = None) -> Markers:
         """The recording turned so that up is along ``axis``; see :func:`gmr.markers.axes.turned_up`."""
         from gmr.markers.axes import turned_up
