@@ -11,7 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from c3d_files import recorded
 from gmr.demo import demo_folder
+from marker_scene import noisy, worn
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -28,7 +30,7 @@ def pages_with(language: str) -> list[Path]:
 
 @pytest.fixture
 def reader_folder(tmp_path: Path) -> Path:
-    """What the documentation assumes: walk.bvh, a folder takes/ of a few clips, 07_01.amc and 07.asf."""
+    """What the documentation assumes: walk.bvh, walk.c3d, a folder takes/ of a few clips, 07_01.amc, 07.asf."""
     takes = tmp_path / "takes"
     takes.mkdir()
     for clip in ("02_01", "07_01", "07_12", "08_01", "09_01", "09_02"):
@@ -36,6 +38,7 @@ def reader_folder(tmp_path: Path) -> Path:
     shutil.copy(demo_folder() / "07_01.bvh", tmp_path / "walk.bvh")
     for file in ("07.asf", "07_01.amc"):
         shutil.copy(ROOT / "tests" / "data" / "amc" / file, tmp_path)
+    recorded(tmp_path / "walk.c3d", noisy(worn(), 0.5))
     return tmp_path
 
 

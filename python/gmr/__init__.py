@@ -6,7 +6,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from gmr import editing, evaluation, matching
+    from gmr import editing, evaluation, markers, matching
     from gmr._core import __version__
     from gmr.bone_tails import Bones, bones
     from gmr.channels import ChannelLayout
@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     )
     from gmr.evaluation.evaluate import evaluate
     from gmr.evaluation.result import Evaluation
-    from gmr.formats import read, read_folder, write
+    from gmr.formats import read, read_folder, read_markers, write
     from gmr.kinematics import forward_kinematics
+    from gmr.markers.recording import Markers
     from gmr.motion import Motion
     from gmr.skeleton import Skeleton
 
@@ -34,6 +35,7 @@ __all__ = [
     "FormatError",
     "FormatWarning",
     "GmrError",
+    "Markers",
     "MissingExtraError",
     "Motion",
     "Skeleton",
@@ -45,9 +47,11 @@ __all__ = [
     "evaluate",
     "evaluation",
     "forward_kinematics",
+    "markers",
     "matching",
     "read",
     "read_folder",
+    "read_markers",
     "write",
 ]
 
@@ -61,6 +65,7 @@ _HOMES = {
     "FormatError": "gmr.errors",
     "FormatWarning": "gmr.errors",
     "GmrError": "gmr.errors",
+    "Markers": "gmr.markers.recording",
     "MissingExtraError": "gmr.errors",
     "Motion": "gmr.motion",
     "Skeleton": "gmr.skeleton",
@@ -72,9 +77,10 @@ _HOMES = {
     "forward_kinematics": "gmr.kinematics",
     "read": "gmr.formats",
     "read_folder": "gmr.formats",
+    "read_markers": "gmr.formats",
     "write": "gmr.formats",
 }
-_MODULES = frozenset({"editing", "evaluation", "matching"})
+_MODULES = frozenset({"editing", "evaluation", "markers", "matching"})
 
 
 def __getattr__(name: str) -> "Any":

@@ -7,7 +7,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["IDENTITY", "about", "conjugate", "from_matrix", "matrices", "multiply", "part_of", "rotated"]
+__all__ = [
+    "IDENTITY",
+    "about",
+    "conjugate",
+    "from_matrices",
+    "from_matrix",
+    "matrices",
+    "multiply",
+    "part_of",
+    "rotated",
+]
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 
@@ -78,3 +88,22 @@ def from_matrix(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
         ]
     )
     return np.asarray(np.linalg.eigh(k)[1][:, 3], np.float64)
+
+
+def from_matrices(a: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(..., 4) unit quaternions of (..., 3, 3) rotation matrices; NaN where those are.
+
+    Each row of ``4 q q^T`` is the quaternion times one of its components; that of the greatest is taken.
+    Source: Shepperd, "Quaternion from Rotation Matrix", J. Guid. Control 1 (1978) 223.
+    """
+    found = np.empty((*a.shape[:-2], 4, 4))
+    x, y, z = a[..., 0, 0], a[..., 1, 1], a[..., 2, 2]
+    for k, square in enumerate((1 + x - y - z, 1 - x + y - z, 1 - x - y + z, 1 + x + y + z)):
+        found[..., k, k] = square
+    for i, j, k in ((0, 1, 2), (0, 2, 1), (1, 2, 0)):
+        found[..., i, j] = found[..., j, i] = a[..., i, j] + a[..., j, i]
+        found[..., k, 3] = found[..., 3, k] = (a[..., j, i] - a[..., i, j]) * (1 if k != 1 else -1)
+    best = np.nan_to_num(np.diagonal(found, axis1=-2, axis2=-1)).argmax(axis=-1)
+    row = np.take_along_axis(found, best[..., None, None], axis=-2)[..., 0, :]
+    unit: NDArray[np.float64] = row / np.linalg.norm(row, axis=-1, keepdims=True)
+    return unit

@@ -183,7 +183,8 @@ def files_of(path: str) -> list[Path | str]:
 
     found = motion_files(path)
     if not found:
-        raise GmrError(f"{path}: no motion in this folder or those below ({', '.join(suffixes())})")
+        known = ", ".join(suffixes("motion"))
+        raise GmrError(f"{path}: no motion in this folder or those below ({known})")
     return [Path(path, file) for file in found]
 
 

@@ -22,8 +22,10 @@ from gmr.cli.common import (
     reading_options,
     say,
 )
+from gmr.cli.markers import Fitting, fitting_options
 
 if TYPE_CHECKING:
+    from gmr.markers import Markers
     from gmr.motion import Motion
 
 __all__ = ["convert"]
@@ -55,6 +57,7 @@ class _Changes:
     "--drop-dummies", is_flag=True, help="Leave out zero-length joints, all but those that BVH needs."
 )
 @reading_options
+@fitting_options
 def convert(
     source: str,
     target: str,
@@ -67,6 +70,7 @@ def convert(
     asf: str | None,
     amc_fps: float | None,
     strict: bool,
+    fitting: Fitting,
 ) -> int:
     """Convert a motion, or a folder of them.
 
@@ -83,6 +87,7 @@ def convert(
       gmr convert walk.bvh walk.amc
       gmr convert walk.bvh walk.gmr         GMR's own format: text, or binary as .gmrb
       gmr convert - - --fps 30 < walk.bvh > walk30.bvh
+      gmr convert walk.c3d walk.bvh         a motion from markers; see gmr info walk.c3d first
     """
     if from_unit is not None and unit is None:
         raise click.UsageError("--from-unit says what --unit converts from; give --unit too")
@@ -96,6 +101,7 @@ def convert(
                 motion, warnings = read_noting(path, positions=positions, asf=asf, fps=amc_fps, strict=strict)
                 for warning in warnings:
                     say(warning)
+                motion = _fitted(motion, fitting)
                 with _naming(motion):
                     motion = _changed(motion, changes, guessed)
                 beside += _write(motion, out)
@@ -137,6 +143,13 @@ def _check_suffix(target: str) -> None:
         format_of_file(target)
     except FormatError as error:
         raise click.UsageError(str(error)) from error
+
+
+def _fitted(found: Motion | Markers, fitting: Fitting) -> Motion:
+    """The motion that was read, or that is made of the markers that were."""
+    from gmr.markers import Markers
+
+    return fitting.motion(found) if isinstance(found, Markers) else found
 
 
 @contextmanager

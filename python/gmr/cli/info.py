@@ -11,10 +11,13 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from gmr.cli.common import Failures, files_of, progress, read_noting, reading_options
+from gmr.cli.markers import marker_json, marker_page
 from gmr.cli.pages import overview, page
 
 if TYPE_CHECKING:
     from gmr.description import Description
+    from gmr.markers.description import MarkerDescription
+    from gmr.motion import Motion
 
 __all__ = ["info"]
 
@@ -25,10 +28,15 @@ FEW: Final = 3
 @click.command(short_help="What is in a file, and what is odd about it.")
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON: an object for one file, a list for more.")
+@click.option(
+    "--relation", metavar="NAME|FILE",
+    help="C3D: which marker is on which part: ior, plug_in_gait or a file; told by the labels otherwise.",
+)  # fmt: skip
 @reading_options
 def info(
     files: tuple[str, ...],
     as_json: bool,
+    relation: str | None,
     positions: str,
     asf: str | None,
     amc_fps: float | None,
@@ -46,6 +54,7 @@ def info(
       gmr info 07_01.amc --asf actor.asf
       gmr info --json takes/ | jq '.[] | select(.oddities != []) | .file'
       cat walk.bvh | gmr info -
+      gmr info walk.c3d                     markers, gaps, flickering and exchanged ones
     """
     failures = Failures()
     paths: list[Path | str] = []
@@ -53,32 +62,55 @@ def info(
         with failures.of(file):
             paths += files_of(file)
     found: dict[str, Description] = {}
+    recordings: dict[str, MarkerDescription] = {}
     with progress(paths, "Reading") as watched:
         for path in watched:
             with failures.of(str(path)):
-                found[str(path)] = _described(path, strict=strict, positions=positions, asf=asf, fps=amc_fps)
+                options = {"strict": strict, "positions": positions, "asf": asf, "fps": amc_fps}
+                _describe(path, found, recordings, relation, **options)
     if as_json:
         alone = len(files) == 1 and not Path(files[0]).is_dir()
-        click.echo(_as_json(found, failures.errors, alone))
-    elif len(found) > FEW:
-        click.echo(overview(found))
-    elif found:
-        click.echo("\n\n".join(page(path, description) for path, description in found.items()))
+        click.echo(_as_json(found, recordings, failures.errors, alone))
+        return failures.exit_code()
+    pages = [overview(found)] if len(found) > FEW else [page(path, of) for path, of in found.items()]
+    pages += [marker_page(path, of) for path, of in recordings.items()]
+    if pages:
+        click.echo("\n\n".join(pages))
     return failures.exit_code()
 
 
-def _as_json(found: dict[str, Description], errors: dict[str, str], alone: bool) -> str:
+def _as_json(
+    found: dict[str, Description],
+    recordings: dict[str, MarkerDescription],
+    errors: dict[str, str],
+    alone: bool,
+) -> str:
     """All that was found and what failed, as JSON."""
     entries = [{"file": path, **_plain(description)} for path, description in found.items()]
+    entries += [{"file": path, **marker_json(description)} for path, description in recordings.items()]
     entries += [{"file": path, "error": error} for path, error in errors.items()]
     return json.dumps(entries[0] if alone else entries, indent=2, allow_nan=False)
 
 
-def _described(path: Path | str, **options: Any) -> Description:
+def _describe(
+    path: Path | str,
+    found: dict[str, Description],
+    recordings: dict[str, MarkerDescription],
+    relation: str | None,
+    **options: Any,
+) -> None:
+    """Puts the description of a file where it belongs."""
     from gmr.description import describe
+    from gmr.markers import Markers
+    from gmr.markers.description import describe_markers
 
-    motion, warnings = read_noting(path, **options)
-    return describe(motion, [_without_place(warning, motion.name) for warning in warnings])
+    read: Motion | Markers
+    read, warnings = read_noting(path, **options)
+    odd = [_without_place(warning, read.name) for warning in warnings]
+    if isinstance(read, Markers):
+        recordings[str(path)] = describe_markers(read, odd, relation)
+    else:
+        found[str(path)] = describe(read, odd)
 
 
 def _without_place(warning: str, name: str | None) -> str:

@@ -123,7 +123,7 @@ def _walk(folder: Path, prefix: str, seen: set[tuple[int, int]]) -> Iterator[str
                 continue
             if entry.is_dir():
                 yield from _walk(folder / entry.name, f"{prefix}{entry.name}/", seen)
-            elif Path(entry.name).suffix.lower() in suffixes():
+            elif Path(entry.name).suffix.lower() in suffixes("motion"):
                 names.append(entry.name)
     serving: set[str] = set().union(*(known.serving_files(names) for known in FORMATS))
     yield from (prefix + name for name in names if name not in serving)

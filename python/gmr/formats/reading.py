@@ -12,9 +12,10 @@ from gmr.formats.mapping import mapped
 from gmr.formats.registry import Format, format_of_file, format_of_text, named_format
 
 if TYPE_CHECKING:
+    from gmr.markers.recording import Markers
     from gmr.motion import Motion
 
-__all__ = ["Positions", "Skeletons", "Source", "given_options", "read", "read_with"]
+__all__ = ["Positions", "Skeletons", "Source", "given_options", "read", "read_markers", "read_with"]
 
 Positions = Literal["replace", "add"]
 Source = str | os.PathLike[str] | bytes | bytearray | memoryview | IO[str] | IO[bytes]
@@ -35,8 +36,8 @@ def read(
 
     Args:
         source: a path; or the contents of a file as bytes; or an open file, text or binary.
-        format: "bvh", "amc", "asf", "gmr" or "gmrb"; told by the suffix of a path, and by the first bytes of
-            anything else, where left out. GMR's text and binary files are told apart by their bytes, whatever
+        format: "bvh", "amc", "asf", "gmr", "gmrb" or "c3d"; told by the suffix of a path, and by the first
+            bytes of anything else, where left out. GMR's text and binary files are told apart by their bytes, whatever
             the suffix.
         positions: BVH: whether position channels "replace" a joint's OFFSET (as in Blender) or "add" to it.
         asf: AMC: its skeleton, a path or the bytes of a file; where left out, the one beside (07_01.asf or
@@ -46,7 +47,8 @@ def read(
 
     Returns:
         The motion as the file has it, all joints kept; ``unit`` is None where the file names none. An ASF
-        alone is a motion without frames.
+        alone is a motion without frames. A C3D file holds no motion: it gives :class:`gmr.Markers`, for which
+        programs that check types have :func:`read_markers`.
 
     Raises:
         FormatError: the file is missing, empty or not what it claims to be; says where and how to mend it.
@@ -56,6 +58,21 @@ def read(
     """
     options = given_options(positions, asf, fps)
     return read_with(source, options, format=format, strict=strict, all_taken=True)
+
+
+def read_markers(source: Source, format: str | None = None, *, strict: bool = False) -> Markers:
+    """Read a recording of markers (C3D); as :func:`read`, but of that type for those who check types.
+
+    Raises:
+        FormatError: as :func:`read`; or the file holds a motion.
+    """
+    from gmr.markers.recording import Markers
+
+    found: object = read(source, format, strict=strict)
+    if not isinstance(found, Markers):
+        what = "this file holds a motion, not markers; read it with gmr.read"
+        raise FormatError(what, file=source if isinstance(source, str) else None)
+    return found
 
 
 def given_options(positions: Positions, asf: Skeletons | None, fps: float | None) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from gmr.errors import FormatError
 
@@ -28,13 +28,14 @@ class Format:
         begins: what its files begin with, any of these: words of text in upper case, after comments that
             begin with ``#``, or bytes of a binary file.
         module: the module that knows it, imported when first needed.
-        reader: its function ``(data: bytes, *, name, strict, **options) -> Motion``.
-        writer: its function ``(motion) -> bytes`` or pieces of them.
+        reader: its function ``(data: bytes, *, name, strict, **options) -> Motion``, or Markers.
+        writer: its function ``(motion) -> bytes`` or pieces of them; None where gmr only reads it.
         options: what the reader can be told besides ``name`` and ``strict``.
         beside: suffix and writer of a second file without which its files say nothing.
         serving: its function ``(names) -> names``: of the files of a folder, those that are part of others.
         begins_at: the byte at which ``begins`` stands, for a binary file; None: it is text.
         is_mapped: the reader takes the map of a file in memory as well as its bytes.
+        holds: what is in its files; folders are searched for motions only.
     """
 
     name: str
@@ -42,12 +43,13 @@ class Format:
     begins: tuple[bytes, ...]
     module: str
     reader: str
-    writer: str
+    writer: str | None
     options: tuple[str, ...] = ()
     beside: tuple[str, str] | None = None
     serving: str | None = None
     begins_at: int | None = None
     is_mapped: bool = False
+    holds: Literal["motion", "markers"] = "motion"
 
     @property
     def is_text(self) -> bool:
@@ -61,12 +63,19 @@ class Format:
         return text.upper().startswith(self.begins)
 
     def read(self, data: bytes | memoryview, **options: Any) -> Motion:
-        """The motion in ``data``."""
+        """What is in ``data``: a motion, or markers as :attr:`holds` says."""
         read: Callable[..., Motion] = getattr(import_module(self.module), self.reader)
         return read(data, **options)
 
     def write(self, motion: Motion) -> Iterable[bytes | memoryview]:
-        """The pieces, in order, of a file that holds ``motion``."""
+        """The pieces, in order, of a file that holds ``motion``.
+
+        Raises:
+            FormatError: gmr reads the format but does not write it.
+        """
+        if self.writer is None:
+            others = ", ".join(suffix for known in FORMATS if known.writer for suffix in known.suffixes)
+            raise FormatError(f"gmr reads {self.name} but does not write it; write one of: {others}")
         return self._pieces(self.writer, motion)
 
     def write_beside(self, motion: Motion) -> Iterable[bytes | memoryview]:
@@ -120,12 +129,13 @@ FORMATS: Final = (
         "GMRB", (".gmrb",), (b'{"__metadata__":',), "gmr.formats.gmr", "read_gmr", "gmrb_pieces",
         begins_at=8, is_mapped=True,
     ),
+    Format("C3D", (".c3d",), (b"\x02P",), "gmr.formats.c3d", "read_c3d", None, begins_at=0, holds="markers"),
 )  # fmt: skip
 
 
-def suffixes() -> tuple[str, ...]:
-    """All suffixes of files that gmr reads."""
-    return tuple(suffix for known in FORMATS for suffix in known.suffixes)
+def suffixes(holds: Literal["motion", "markers"] | None = None) -> tuple[str, ...]:
+    """Suffixes of files that gmr reads; of those that hold motions, or markers, or of all."""
+    return tuple(suffix for known in FORMATS if holds in (None, known.holds) for suffix in known.suffixes)
 
 
 def named_format(name: str) -> Format:
@@ -173,7 +183,7 @@ def format_of_text(data: bytes, file: str | None) -> Format:
     for known in FORMATS:
         if known.is_begun_by(data, start):
             return known
-    begins = ", ".join(f"'{known.begins[0].decode('latin-1')}' ({known.name})" for known in FORMATS)
+    begins = ", ".join(f"{known.begins[0].decode('latin-1')!r} ({known.name})" for known in FORMATS)
     raise FormatError(
         f"this begins like no format that gmr knows: {start[:20]!r}. A file begins with {begins}; "
         "check that it is a motion, or name its format.",
