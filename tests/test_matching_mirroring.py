@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gmr.errors import DatasetError
 from gmr.matching import Database
 from gmr.motion import Motion
-from gmr.quaternions import conjugate, from_matrix, matrices, multiply
+from gmr.quaternions import conjugate, from_matrices, matrices, multiply
 from gmr.skeleton import Skeleton
 from kept_poses import shown
 from walkers import walker
@@ -39,7 +39,7 @@ def in_other_frames(motion: Motion, turns: dict[int, NDArray[np.float64]]) -> Mo
 
 
 HALF_TURN = np.array([0.0, 0.0, 1.0, 0.0])
-ALONG_X = from_matrix(np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]))
+ALONG_X = from_matrices(np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]))
 SLANTED = multiply(ALONG_X, np.array([0.5, -0.5, 0.5, 0.5]))
 
 RIGS = {

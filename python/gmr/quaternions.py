@@ -12,7 +12,6 @@ __all__ = [
     "about",
     "conjugate",
     "from_matrices",
-    "from_matrix",
     "matrices",
     "multiply",
     "part_of",
@@ -70,24 +69,6 @@ def matrices(a: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
     found[..., 1, :] = np.stack([2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)], axis=-1)
     found[..., 2, :] = np.stack([2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)], axis=-1)
     return found
-
-
-def from_matrix(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(4,) unit quaternion of a (3, 3) rotation matrix.
-
-    It is the eigenvector of the largest eigenvalue of Bar-Itzhack's symmetric matrix, which no angle makes
-    inexact. Source: Bar-Itzhack, "New Method for Extracting the Quaternion from a Rotation Matrix" (2000).
-    """
-    m = matrix
-    k = np.array(
-        [
-            [m[0, 0] - m[1, 1] - m[2, 2], m[1, 0] + m[0, 1], m[2, 0] + m[0, 2], m[2, 1] - m[1, 2]],
-            [m[1, 0] + m[0, 1], m[1, 1] - m[0, 0] - m[2, 2], m[2, 1] + m[1, 2], m[0, 2] - m[2, 0]],
-            [m[2, 0] + m[0, 2], m[2, 1] + m[1, 2], m[2, 2] - m[0, 0] - m[1, 1], m[1, 0] - m[0, 1]],
-            [m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], m[0, 0] + m[1, 1] + m[2, 2]],
-        ]
-    )
-    return np.asarray(np.linalg.eigh(k)[1][:, 3], np.float64)
 
 
 def from_matrices(a: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.matching.posed import Posed
-from gmr.quaternions import conjugate, from_matrix, matrices, multiply
+from gmr.quaternions import conjugate, from_matrices, matrices, multiply
 from gmr.skeleton import Skeleton
 
 __all__ = ["Mirror", "find_mirror"]
@@ -89,8 +89,8 @@ def _turns(skeleton: Skeleton, frames: NDArray[np.float64]) -> NDArray[np.float6
     for slot, parent in enumerate(above.tolist()):
         image = np.diag(_QUATERNION)
         if parent >= 0:
-            image = multiply(conjugate(from_matrix(frames[parent])), image)
-        turns[slot] = multiply(image, from_matrix(frames[slot]))
+            image = multiply(conjugate(from_matrices(frames[parent])), image)
+        turns[slot] = multiply(image, from_matrices(frames[slot]))
     return turns
 
 
