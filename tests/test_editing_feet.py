@@ -296,6 +296,7 @@ def refusals() -> dict[str, tuple[Callable[[], object], type[Exception], str]]:
         "no unit": (
             lambda: contacts(nobody().with_unit(None), ["dot"]), GmrError, "declare it first",
         ),
+        "no time": (lambda: contacts(replace(WALK, frame_time=0.0)), GmrError, "frame time of 0"),
         "named twice": (lambda: contacts(WALK, ["Head", "Head"]), SkeletonError, "named twice"),
         "thresholds": (lambda: contacts(WALK, height=(0.1, 0.05)), GmrError, "not above the second"),
         "least": (lambda: contacts(WALK, least=-1), GmrError, "cannot be shorter than 0 seconds"),

@@ -118,9 +118,14 @@ def contacts(
     Raises:
         SkeletonError: a joint does not exist.
         DatasetError: the feet are not found; the message says how to name them.
-        GmrError: the unit is unknown and cannot be guessed, or a threshold makes no sense.
+        GmrError: the unit is unknown and cannot be guessed, a frame lasts 0 s, or a threshold makes no sense.
     """
     _check(height, speed, least)
+    if motion.frame_time == 0:
+        raise GmrError(
+            f"{motion.name or 'this motion'} has a frame time of 0, so its joints have no speed, which "
+            "contacts are told by; give it one: dataclasses.replace(motion, frame_time=1 / 30)"
+        )
     scene = scene_of(motion)
     unit = scene.unit.per_metre("telling contacts by metres and metres a second")
     chosen = _feet(motion, names) if joints is None else motion.skeleton.indices(joints).tolist()
@@ -134,13 +139,13 @@ def contacts(
         speeds = _speeds(places, motion.frame_time)
         heights = places @ scene.up_vector
         if ground is None:
-            around = min(round(_STEP * motion.fps), len(heights)) if np.isfinite(motion.fps) else len(heights)
+            around = min(round(_STEP * motion.fps), len(heights))
             heights -= _levels(heights, speeds, speed[0], uneven, around)
         else:
             heights -= ground / unit
         strict = (heights <= height[0]) & (speeds <= speed[0])
         loose = (heights <= height[1]) & (speeds <= speed[1])
-        frames = max(round(least * motion.fps), 1) if np.isfinite(motion.fps) else 1
+        frames = max(round(least * motion.fps), 1)
         for k, name in enumerate(labels):
             for first, end in _runs_with(loose[:, k], strict[:, k]):
                 if end - first >= frames:
@@ -179,7 +184,7 @@ def _feet(motion: Motion, names: Mapping[str, str | int] | None) -> list[int]:
 def _speeds(places: Floats, frame_time: float) -> Floats:
     """(F, K) speeds by central differences, one-sided at the ends."""
     frames = np.arange(len(places))
-    half = max(round(_SPEED_OVER / frame_time / 2), 1) if frame_time else 1
+    half = max(round(_SPEED_OVER / frame_time / 2), 1)
     after, before = np.minimum(frames + half, len(frames) - 1), np.maximum(frames - half, 0)
     seconds = (after - before) * frame_time
     ways = np.linalg.norm(places[after] - places[before], axis=2)

@@ -15,6 +15,7 @@ from gmr.editing.limbs import limb_that_moves
 from gmr.editing.rejoin import cut_at, moved_roots, rejoin
 from gmr.errors import GmrError, SkeletonError
 from gmr.motion import Motion
+from gmr.tpose import leading_rest_frames
 
 __all__ = ["Bar", "GripReport", "grip"]
 
@@ -123,7 +124,8 @@ def grip(
             None: a bar that goes along with the hands: their middle is its middle, and it points from the one
             to the other.
         spacing: file units from hand to hand along the bar; as the motion has it on average by default.
-        frames: (first, one past last) in which the bar is held; all by default.
+        frames: (first, one past last) in which the bar is held; by default all of the recording, without what
+            a converter put before it.
         blend: seconds before and after, in which the hands are led to the bar and back.
         hold_rotation: the hands keep their rotation in the world instead.
 
@@ -151,6 +153,7 @@ def grip(
     places = np.stack([point + (middle + side * width / 2) * along for side in (-1, 1)], axis=1)
 
     weights = blend_weights(count, first, end, round(blend * motion.fps) if motion.frame_time else 0)
+    weights[: min(leading_rest_frames(motion), first)] = 0
     moves = weights[:, None, None] * (places - hands)
     ends = [limb.end for limb in limbs]
     wrists = motion.positions(dtype=np.float64, joints=ends) + moves
@@ -178,7 +181,7 @@ def _carried_bar(hands: Floats, motion: Motion, first: int, end: int) -> tuple[F
 def _frames(motion: Motion, frames: tuple[int, int] | None) -> tuple[int, int]:
     """The frames in which the bar is held."""
     count = motion.frame_count
-    first, end = (0, count) if frames is None else frames
+    first, end = (leading_rest_frames(motion), count) if frames is None else frames
     if not 0 <= first < end <= count:
         raise GmrError(
             f"frames={(first, end)}: give the first and one past the last of the motion's {count} frames"

@@ -117,6 +117,8 @@ def reach(
 def _frame(motion: Motion, frame: int) -> int:
     """The frame counted from the beginning."""
     count = motion.frame_count
+    if not count:
+        raise GmrError(f"{motion.name or 'this motion'} has no frames, so nothing can be reached in it")
     if not -count <= frame < count:
         raise GmrError(f"there is no frame {frame}; the motion has frames 0 to {count - 1}")
     return frame % count

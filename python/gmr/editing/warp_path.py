@@ -108,7 +108,8 @@ def warp_path(
         raise GmrError(f"the path has {len(path)} frames, the motion {motion.frame_count}; give as many")
     scene = scene_of(motion)
     warped = _moved(motion, before, path, scene)
-    held = contacts(motion) if lock or scene.unit.metres is not None else None
+    can_tell = scene.unit.metres is not None and motion.frame_time > 0
+    held = contacts(motion) if lock or can_tell else None
     sliding = slides(warped, held) if held is not None else np.zeros(0)
     if not lock or held is None:
         return Edited(warped, WarpReport(before, path, scene, held, sliding, None))
