@@ -21,6 +21,7 @@ from gmr.formats.bvh import write_bvh
 from gmr.frames import Pose, Rows
 from gmr.motion import Motion
 from gmr.partial import below
+from gmr.tpose import leading_rest_frames
 from walks import walks_of
 
 CLOSE = 1e-12
@@ -295,3 +296,9 @@ def test_motions_pickle_in_any_configuration(walk: tuple[Motion, Motion]) -> Non
     again = pickle.loads(pickle.dumps(moved))
     assert again == moved
     assert forest.home(again) == forest.home(moved)
+
+
+def test_an_added_tpose_is_seen_in_any_configuration_and_without_dummies() -> None:
+    motion = gmr.read(demo_folder() / "07_01.bvh")
+    for changed in (motion, motion.drop_dummies(), motion.with_roots(["LeftFoot", "Head"])):
+        assert leading_rest_frames(changed) == 1

@@ -46,11 +46,11 @@ def leading_rest_frames(motion: Motion) -> int:
     to the recording. CMU's conversions to BVH begin with one, at the place where the roots stand in frame 1;
     a few go on with frames of zeros (07_12, 09_10), which count too.
     """
-    start = motion[: _MOST_FRAMES + 2]
+    start = motion[: _MOST_FRAMES + 2].to_post_rotation()
     try:
         angles = start.rows[:, _turning_columns(start)]
     except SkeletonError:
-        return 0  # bones that turn on their own were not set by a converter to three angles a joint
+        return 0  # what channels cannot say was not set by a converter
     if not angles.shape[1] or not np.isfinite(angles).all():
         return 0
     resting = _resting(angles) >= _RESTING
