@@ -30,7 +30,7 @@ def pages_with(language: str) -> list[Path]:
 
 @pytest.fixture
 def reader_folder(tmp_path: Path) -> Path:
-    """What the documentation assumes: walk.bvh, walk.c3d, a folder takes/ of a few clips, 07_01.amc, 07.asf."""
+    """What the documentation assumes: walk.bvh, walk.c3d, a few clips in takes/, 07_01.amc and 07.asf."""
     takes = tmp_path / "takes"
     takes.mkdir()
     for clip in ("02_01", "07_01", "07_12", "08_01", "09_01", "09_02"):

@@ -37,8 +37,8 @@ def read(
     Args:
         source: a path; or the contents of a file as bytes; or an open file, text or binary.
         format: "bvh", "amc", "asf", "gmr", "gmrb" or "c3d"; told by the suffix of a path, and by the first
-            bytes of anything else, where left out. GMR's text and binary files are told apart by their bytes, whatever
-            the suffix.
+            bytes of anything else, where left out. GMR's text and binary files are told apart by their
+            bytes, whatever the suffix.
         positions: BVH: whether position channels "replace" a joint's OFFSET (as in Blender) or "add" to it.
         asf: AMC: its skeleton, a path or the bytes of a file; where left out, the one beside (07_01.asf or
             07.asf for 07_01.amc, or the only one in the folder).
