@@ -8,6 +8,7 @@ mod euler_block;
 mod half_angle;
 mod quaternion;
 mod slerp;
+mod turn_slots;
 
 pub(crate) use euler::check_indices;
 pub use euler::{Axes, EulerColumns, euler_to_quaternions, quaternions_to_euler};
@@ -17,3 +18,4 @@ pub use quaternion::{
     normalize, rotate, rotate_inverse,
 };
 pub use slerp::{slerp, slerp_frames};
+pub use turn_slots::turn_slots;
