@@ -1,8 +1,8 @@
 """The experiment of the General Motion Representation: all positions from k random roots, and from BVH.
 
-37 recordings of 2,768 frames, 14.2 minutes at 120 frames a second; per k ten random sets of k roots; the time to
-compute the positions of all joints in all frames, one recording after the other into the same array, which is
-as long as one recording. BVH computes the same joints by gmr's own kinematics: once from Euler rows as read,
+37 recordings of 2,768 frames, 14.2 minutes at 120 frames a second; per k ten random sets of k roots; the time
+to compute the positions of all joints in all frames, one recording after the other into the same array, which
+is as long as one recording. BVH computes the same joints by gmr's own kinematics: once from Euler rows as read,
 once from ready quaternions.
 Source: "General Motion Representation", experimental results and Figure 4.
 """
@@ -136,7 +136,7 @@ class Recordings:
 
 @cache
 def record(frame_count: int = LARGE_FRAME_COUNT) -> Recordings:
-    """37 recordings cut from CMU's rows, one after the other: subjects 01 to 09 below GMR_DATA, else what ships.
+    """37 recordings cut from CMU's rows, end to end: subjects 01 to 09 below GMR_DATA, else what ships.
 
     Args:
         frame_count: fewer than :data:`LARGE_FRAME_COUNT` for a smoke run.

@@ -19,7 +19,18 @@ from gmr.unbuffered import Whole
 if TYPE_CHECKING:
     from gmr.motion import Motion
 
-__all__ = ["Failures", "Unit", "files_of", "finished", "progress", "read_input", "read_noting", "say"]
+__all__ = [
+    "Failures",
+    "Unit",
+    "files_of",
+    "finished",
+    "naming",
+    "progress",
+    "read_input",
+    "read_noting",
+    "say",
+    "write_output",
+]
 
 Item = TypeVar("Item")
 
@@ -170,3 +181,30 @@ def progress(items: Iterable[Item], label: str) -> Iterator[Iterable[Item]]:
         return
     with click.progressbar(held, label=label, file=sys.stderr) as bar:
         yield bar
+
+
+@contextmanager
+def naming(motion: Motion) -> Iterator[None]:
+    """An error about joints or frames names the motion too."""
+    try:
+        yield
+    except GmrError as error:
+        if str(motion.name) in str(error):
+            raise
+        raise GmrError(f"{motion.name}: {error}") from error
+
+
+def write_output(motion: Motion, out: Path | str, format: str | None = None) -> None:
+    """Writes a motion, by suffix; ``-`` is standard output, in ``format``. Makes folders where none are."""
+    from gmr.formats import write
+
+    if out == STDIO:
+        write(motion, sys.stdout.buffer, format)
+        sys.stdout.buffer.flush()
+        return
+    if isinstance(out, Path):
+        try:
+            out.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise GmrError(f"{out}: its folder cannot be made: {error.strerror}") from error
+    write(motion, out)

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from gmr.cli.common import STDIO, Failures, Unit, files_of, progress, read_noting, say
+from gmr.cli.common import (
+    STDIO,
+    Failures,
+    Unit,
+    files_of,
+    naming,
+    progress,
+    read_noting,
+    say,
+    write_output,
+)
+from gmr.cli.roots import Joints
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
@@ -43,6 +51,7 @@ class _Changes:
     from_unit: float | None
     drop_dummies: bool
     mirror: bool
+    roots: tuple[str, ...] | None
 
 
 @click.command(short_help="Convert motions: rate, unit, mirror image, dummies.")
@@ -59,6 +68,7 @@ class _Changes:
 @click.option(
     "--drop-dummies", is_flag=True, help="Leave out zero-length joints, all but those that BVH needs."
 )
+@click.option("--roots", type=Joints(), help="Make just these joints roots: see gmr roots.")
 @click.option(
     "--positions", type=click.Choice(["replace", "add"]), default="replace", show_default=True,
     help="What position channels do to a joint's OFFSET.",
@@ -72,6 +82,7 @@ def convert(
     from_unit: float | None,
     mirror: bool,
     drop_dummies: bool,
+    roots: tuple[str, ...] | None,
     positions: str,
     strict: bool,
 ) -> int:
@@ -87,11 +98,12 @@ def convert(
       gmr convert takes/ mirrored/ --mirror
       gmr convert cmu.bvh metres.bvh --from-unit cmu --unit m
       gmr convert walk.bvh lean.bvh --drop-dummies
+      gmr convert walk.bvh neck.bvh --roots Neck
       gmr convert - - --fps 30 < walk.bvh > walk30.bvh
     """
     if from_unit is not None and unit is None:
         raise click.UsageError("--from-unit says what --unit converts from; give --unit too")
-    changes = _Changes(fps, unit, from_unit, drop_dummies, mirror)
+    changes = _Changes(fps, unit, from_unit, drop_dummies, mirror, roots)
     failures = Failures()
     guessed: dict[str, list[str]] = {}
     with progress(_jobs(source, target), "Converting") as watched:
@@ -100,9 +112,9 @@ def convert(
                 motion, warnings = read_noting(path, positions=positions, strict=strict)
                 for warning in warnings:
                     say(warning)
-                with _naming(motion):
+                with naming(motion):
                     motion = _changed(motion, changes, guessed)
-                _write(motion, out)
+                write_output(motion, out)
     for guess, names in guessed.items():
         say(f"{_several(names)} taken to be in {guess}; state another unit with --from-unit")
     return failures.exit_code()
@@ -141,25 +153,14 @@ def _check_suffix(target: str) -> None:
         raise click.UsageError(str(error)) from error
 
 
-@contextmanager
-def _naming(motion: Motion) -> Iterator[None]:
-    """An error about joints or frames names the motion too."""
-    from gmr.errors import GmrError
-
-    try:
-        yield
-    except GmrError as error:
-        if str(motion.name) in str(error):
-            raise
-        raise GmrError(f"{motion.name}: {error}") from error
-
-
 def _changed(motion: Motion, changes: _Changes, guessed: dict[str, list[str]]) -> Motion:
     """The motion after all that was asked for; a unit that had to be guessed is noted in ``guessed``."""
     if changes.mirror:
         motion = motion.mirror()
     if changes.drop_dummies:
         motion = motion.drop_dummies()
+    if changes.roots is not None:
+        motion = motion.with_roots(changes.roots)
     if changes.fps is not None:
         motion = motion.resample(changes.fps)
     if changes.unit is not None:
@@ -187,19 +188,3 @@ def _in_known_unit(motion: Motion, stated: float | None, guessed: dict[str, list
 def _several(names: list[str]) -> str:
     """One name, or a count of several."""
     return names[0] if len(names) == 1 else f"{len(names)} motions ({names[0]}, ...)"
-
-
-def _write(motion: Motion, out: Path | str) -> None:
-    from gmr.errors import GmrError
-    from gmr.formats import write
-
-    if out == STDIO:
-        write(motion, sys.stdout.buffer)
-        sys.stdout.buffer.flush()
-        return
-    if isinstance(out, Path):
-        try:
-            out.parent.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise GmrError(f"{out}: its folder cannot be made: {error.strerror}") from error
-    write(motion, out)

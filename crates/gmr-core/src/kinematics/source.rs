@@ -9,6 +9,9 @@ use crate::lanes::rows::{SourceRows, groups};
 use crate::lanes::{Lanes, Real, cache};
 use crate::rotation::{EulerBlock, normalize};
 
+/// Numbers in a row of translations that need not be asked for: they lie close enough for the memory to see what comes.
+const FEW_TRANSLATIONS: usize = 24;
+
 /// Where a block's local rotations and its bones' vectors come from.
 pub(crate) trait Source<L: Lanes> {
     /// Takes in a block.
@@ -38,11 +41,12 @@ pub(crate) struct Quaternions<'a, L: Lanes> {
     /// Columns of the translations, in groups of four that the job needs.
     groups: Vec<usize>,
     columns: Vec<L>,
-    /// Where the next block begins.
-    next: usize,
-    /// What each turn asks the memory for of the next block; nothing where few slots are needed.
-    share: usize,
-    /// What is asked for at once: the lines of these slots, where they are few.
+    /// Where the next block begins, in rotations and in translations.
+    next: [usize; 2],
+    /// How many of its numbers, or of the lines, each turn asks the memory for; none of so few that they come by
+    /// themselves.
+    shares: [usize; 2],
+    /// Where the rotations that are needed lie in a block, where these are few; else empty.
     lines: Vec<usize>,
 }
 
@@ -65,15 +69,23 @@ impl<'a, L: Lanes> Quaternions<'a, L> {
         let slots = plan.turns.iter().filter_map(|turn| turn.slot).chain(other_slots.iter().copied());
         let slots: BTreeSet<usize> = slots.collect();
         let is_sparse = 2 * slots.len() < slot_count;
+        let lines = if is_sparse { lines(rotations, slot_count, &slots, L::WIDTH) } else { vec![] };
+        let rotation_share = if is_sparse {
+            lines.len().div_ceil(plan.turns.len())
+        } else {
+            share::<L::Real, _>(4 * slot_count * L::WIDTH, plan)
+        };
+        let is_streamed = width < FEW_TRANSLATIONS;
+        let translation_share = if is_streamed { 0 } else { share::<L::Real, _>(width * L::WIDTH, plan) };
         Self {
             rotations: SourceRows::new(rotations, 4 * slot_count),
             normalize,
             translations: SourceRows::new(translations, width),
             groups: groups(&is_wanted),
             columns: vec![L::splat(L::Real::ZERO); width.max(4)],
-            next: 0,
-            share: if is_sparse { 0 } else { share::<L::Real, _>(4 * slot_count * L::WIDTH, plan) },
-            lines: if is_sparse { lines(rotations, slot_count, &slots, L::WIDTH) } else { vec![] },
+            next: [0; 2],
+            shares: [rotation_share, translation_share],
+            lines,
         }
     }
 }
@@ -81,10 +93,8 @@ impl<'a, L: Lanes> Quaternions<'a, L> {
 impl<L: Lanes> Source<L> for Quaternions<'_, L> {
     #[inline(always)]
     fn load(&mut self, frames: Range<usize>) {
-        self.next = (frames.start + L::WIDTH) * self.rotations.width();
-        self.lines.iter().for_each(|line| cache::prefetch(self.rotations.data(), self.next + line, 1));
-        let (count, width) = (L::WIDTH * self.translations.width(), self.translations.width());
-        cache::prefetch(self.translations.data(), (frames.start + L::WIDTH) * width, count);
+        let next = frames.start + L::WIDTH;
+        self.next = [next * self.rotations.width(), next * self.translations.width()];
         self.rotations.block(&frames, L::WIDTH);
         let (block, stride) = self.translations.block(&frames, L::WIDTH);
         for &group in &self.groups {
@@ -95,7 +105,16 @@ impl<L: Lanes> Source<L> for Quaternions<'_, L> {
 
     #[inline(always)]
     fn prefetch(&self, turn: usize) {
-        cache::prefetch(self.rotations.data(), self.next + turn * self.share, self.share);
+        let ([rotations, translations], [share, few]) = (self.next, self.shares);
+        if self.lines.is_empty() {
+            cache::prefetch(self.rotations.data(), rotations + turn * share, share);
+        } else {
+            let lines = self.lines.iter().skip(turn * share).take(share);
+            lines.for_each(|line| cache::prefetch(self.rotations.data(), rotations + line, 1));
+        }
+        if few > 0 {
+            cache::prefetch(self.translations.data(), translations + turn * few, few);
+        }
     }
 
     #[inline(always)]
