@@ -35,7 +35,10 @@ def process(*args: str | Path, **options: Any) -> subprocess.CompletedProcess[st
 
 @pytest.mark.parametrize(
     ("typed", "says"),
-    [("evalute", "Did you mean evaluate?"), ("nonsense", "There are evaluate, info, convert, bench, demo.")],
+    [
+        ("evalute", "Did you mean evaluate?"),
+        ("nonsense", "There are evaluate, info, convert, roots, bench, demo."),
+    ],
 )
 def test_an_unknown_command_gets_the_names_near_it(typed: str, says: str, capsys: Captured) -> None:
     assert run(typed, "takes") == 2

@@ -271,6 +271,26 @@ def turned_euler_to_quaternions(
         ValueError: when shapes do not fit, or a column or axis does not exist.
     """
 
+def turn_slots(
+    rotations: NDArray[np.float64],
+    slots: NDArray[np.int32],
+    by: NDArray[np.int32],
+    inverse: bool,
+    threads: int = 1,
+) -> None:
+    """Turns slots of (F, S, 4) ``rotations`` by others, in place and one after the other.
+
+    Args:
+        rotations: C-contiguous; written.
+        slots: (P,) those to turn.
+        by: (P,) for each of them the one that it is turned by: ``R_slot <- R_by R_slot``.
+        inverse: by the inverse of ``R_by``.
+        threads: 0 means all cores; the bits are the same for every number.
+
+    Raises:
+        ValueError: when a slot does not exist.
+    """
+
 def quaternions_to_euler(quaternions: NDArray[np.float64], axes: NDArray[np.uint8]) -> NDArray[np.float64]:
     """Angles in degrees, (F, S, 3), of quaternions (F, S, 4) of any length about ``axes`` (S, 3).
 
@@ -430,6 +450,8 @@ def configure(
     rotations: NDArray[np.float64],
     translations: NDArray[np.float64],
     threads: int = 1,
+    slots: NDArray[np.int32] | None = None,
+    joints: NDArray[np.int32] | None = None,
     /,
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64]]:
     """A motion in another configuration of its skeleton.
@@ -442,9 +464,11 @@ def configure(
         rotations: (F, S, 4).
         translations: (F, T, 3).
         threads: 0 means all cores; the bits are the same for every number.
+        slots: (P,) those of ``after`` whose rotations are wanted; None: all.
+        joints: those whose translations are wanted, as far as they are translated; None: all.
 
     Returns:
-        Rotations (F, S', 4); the joints translated (U,): roots, moving bones, and those that were cut;
+        Rotations (F, P, 4); the joints translated (U,): roots, moving bones, and those that were cut;
         translations (F, U, 3).
 
     Raises:
@@ -462,6 +486,8 @@ def configure_euler(
     translation_columns: NDArray[np.int32],
     adds_offset: bool,
     threads: int = 1,
+    slots: NDArray[np.int32] | None = None,
+    joints: NDArray[np.int32] | None = None,
     /,
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64]]:
     """As :func:`configure`, from rows (F, C) as :func:`forward_kinematics_euler` takes them."""

@@ -10,19 +10,19 @@ Source: the General Motion Representation, dummy joints.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr import _core
 from gmr.arrays import read_only
 from gmr.channels import ChannelLayout
-from gmr.euler import translations_of_rows
-from gmr.forest import changed_at_home
+from gmr.euler import rotations_of_rows, translations_of_rows
+from gmr.forest import THREADING_PAYS, changed_at_home
 from gmr.frames import Pose, Rows
-from gmr.quaternions import conjugate, multiply
 from gmr.skeleton import End, Skeleton
 
 if TYPE_CHECKING:
@@ -112,31 +112,34 @@ def drop_dummies(motion: Motion) -> Motion:
 def _without(motion: Motion, dummies: tuple[int, ...]) -> Motion:
     """The motion, at home, without these dummies."""
     gone = set(dummies)
-    skeleton, pose = motion.skeleton, motion.pose
-    rotations = pose.rotations.copy()
+    skeleton = motion.skeleton
+    rotations, translations = _numbers(motion)
     parents, slots = skeleton.parents.copy(), skeleton.slots.copy()
+    turned, by = [], []
     for dummy in (joint for joint in skeleton.parents_first if joint in gone):
-        above, children = slots[dummy], skeleton.children[dummy]
-        for slot in sorted({int(skeleton.slots[child]) for child in children} - {-1}):
-            if above >= 0:
-                rotations[:, slot] = multiply(rotations[:, above], rotations[:, slot])
+        above, children = int(slots[dummy]), skeleton.children[dummy]
+        if above >= 0:
+            below = sorted({int(skeleton.slots[child]) for child in children} - {-1})
+            turned += below
+            by += [above] * len(below)
         for child in children:
             parents[child] = parents[dummy]
             slots[child] = slots[child] if slots[child] >= 0 else above
+    _turn(rotations, turned, by)
     kept = np.setdiff1d(np.arange(skeleton.joint_count), dummies)
-    moved = np.isin(pose.translated, kept)
+    moved = np.flatnonzero(np.isin(motion.translated, kept))
     return replace(
         motion,
         skeleton=_subset(skeleton, kept, parents, slots),
         source=Pose(
             read_only(rotations),
-            _renumbering(skeleton.joint_count, kept)[pose.translated[moved]],
-            read_only(np.ascontiguousarray(pose.translations[:, moved])),
+            _renumbering(skeleton.joint_count, kept)[motion.translated[moved]],
+            read_only(translations.take(moved, axis=1)),
         ),
         dropped=Dropped(
             skeleton,
-            pose.layout,
-            tuple(pose.translated.tolist()),
+            motion.layout,
+            tuple(motion.translated.tolist()),
             dummies,
             motion.dropped,
             motion.source if isinstance(motion.source, Rows) else None,
@@ -162,11 +165,14 @@ def restore_dummies(motion: Motion) -> Motion:
     skeleton, pose = record.skeleton, motion.pose
     rotations = pose.rotations.copy()
     gone = set(record.dummies)
+    turned, by = [], []
     for dummy in (joint for joint in reversed(skeleton.parents_first) if joint in gone):
-        above = skeleton.slots[dummy]
-        for slot in sorted({int(skeleton.slots[child]) for child in skeleton.children[dummy]} - {-1}):
-            if above >= 0:
-                rotations[:, slot] = multiply(conjugate(rotations[:, above]), rotations[:, slot])
+        above = int(skeleton.slots[dummy])
+        if above >= 0:
+            below = sorted({int(skeleton.slots[child]) for child in skeleton.children[dummy]} - {-1})
+            turned += below
+            by += [above] * len(below)
+    _turn(rotations, turned, by, back=True)
     kept = np.setdiff1d(np.arange(skeleton.joint_count), record.dummies)
     # A joint that is at rest need not be among those that are translated now; a dummy has no length at all.
     rest = np.where(
@@ -180,6 +186,22 @@ def restore_dummies(motion: Motion) -> Motion:
         read_only(rotations), np.array(record.translated, np.int32), read_only(translations), record.layout
     )
     return replace(motion, skeleton=skeleton, source=source, dropped=record.before)
+
+
+def _numbers(motion: Motion) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The rotations, in an array of their own, and the translations."""
+    source = motion.source
+    if isinstance(source, Rows) and "pose" not in motion.__dict__:
+        return rotations_of_rows(source), translations_of_rows(motion.skeleton, source)
+    return motion.rotations.copy(), motion.translations
+
+
+def _turn(
+    rotations: NDArray[np.float64], slots: Sequence[int], by: Sequence[int], *, back: bool = False
+) -> None:
+    """Turns slots by others, in place and one after the other: ``R_slot <- R_by R_slot``; or back."""
+    threads = 0 if rotations.size > 4 * THREADING_PAYS else 1
+    _core.turn_slots(rotations, np.array(slots, np.int32), np.array(by, np.int32), back, threads)
 
 
 def _renumbering(count: int, kept: NDArray[np.intp]) -> NDArray[np.int32]:

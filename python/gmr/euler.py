@@ -15,7 +15,13 @@ from gmr.frames import Pose, Rows
 from gmr.quaternions import conjugate, multiply
 from gmr.skeleton import Skeleton
 
-__all__ = ["fewer_angles", "pose_from_rows", "rows_from_pose", "translations_of_rows"]
+__all__ = [
+    "fewer_angles",
+    "pose_from_rows",
+    "rotations_of_rows",
+    "rows_from_pose",
+    "translations_of_rows",
+]
 
 _EXACT = 1e-6
 """Radians by which a rotation may miss what is written of it: the rounding of poses given in float32."""
@@ -23,11 +29,8 @@ _EXACT = 1e-6
 
 def pose_from_rows(skeleton: Skeleton, rows: Rows) -> Pose:
     """Rotations and translations of rows of channels."""
-    layout = rows.layout
-    rotations = np.empty((len(rows), len(layout.slot_joints), 4))
-    _core.euler_to_quaternions(rows.values, layout.rotation_columns, layout.rotation_axes, rotations)
-    translations = translations_of_rows(skeleton, rows)
-    return Pose(read_only(rotations), layout.translated, read_only(translations), layout)
+    rotations, translations = rotations_of_rows(rows), translations_of_rows(skeleton, rows)
+    return Pose(read_only(rotations), rows.layout.translated, read_only(translations), rows.layout)
 
 
 def rows_from_pose(skeleton: Skeleton, pose: Pose) -> Rows:
@@ -46,6 +49,14 @@ def rows_from_pose(skeleton: Skeleton, pose: Pose) -> Rows:
     _write_angles(values, layout, skeleton, pose.rotations)
     _write_translations(values, layout, skeleton, pose)
     return Rows(read_only(values), layout)
+
+
+def rotations_of_rows(rows: Rows) -> NDArray[np.float64]:
+    """(F, S, 4): the rotation of each slot, in an array of its own."""
+    layout = rows.layout
+    rotations = np.empty((len(rows), len(layout.slot_joints), 4))
+    _core.euler_to_quaternions(rows.values, layout.rotation_columns, layout.rotation_axes, rotations)
+    return rotations
 
 
 def translations_of_rows(skeleton: Skeleton, rows: Rows) -> NDArray[np.float64]:

@@ -27,10 +27,12 @@ if TYPE_CHECKING:
     from gmr.motion import Motion
 
 __all__ = [
+    "THREADING_PAYS",
     "arranged",
     "carried",
     "changed_at_home",
     "configuration",
+    "configured",
     "home",
     "join",
     "shift_root",
@@ -43,7 +45,7 @@ Joint = str | int | np.integer[Any]
 _STILL = 1e-11
 """Share of the motion's reach by which a bone that was cut may miss its offset by rounding alone."""
 
-_THREADING_PAYS = 1_000_000
+THREADING_PAYS = 1_000_000
 """Joint positions above which sharing the work among threads wins over starting them."""
 
 
@@ -162,11 +164,33 @@ def carried(motion: Motion, skeleton: Skeleton) -> Motion:
         return motion
     if isinstance(source, Pose) and source.rows is not None and skeleton.home is None:
         return replace(motion, skeleton=skeleton, source=source.rows)
-    rotations, translated, translations = _configured(motion, skeleton)
-    kept, translations = _without_still_bones(motion, skeleton, translated, translations)
+    rotations, translated, translations = configured(motion, skeleton)
     rows = source.rows if isinstance(source, Pose) else source
-    pose = Pose(read_only(rotations), kept, read_only(translations), source.layout, rows, motion.acclaim)
+    pose = Pose(
+        read_only(rotations), translated, read_only(translations), source.layout, rows, motion.acclaim
+    )
     return replace(motion, skeleton=skeleton, source=pose)
+
+
+def configured(
+    motion: Motion,
+    skeleton: Skeleton,
+    slots: NDArray[np.int32] | None = None,
+    joints: NDArray[np.int32] | None = None,
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64]]:
+    """The numbers of a motion as another configuration of its skeleton has them.
+
+    Args:
+        motion: any.
+        skeleton: the configuration.
+        slots: (P,) the slots of ``skeleton`` whose rotations are wanted; all by default.
+        joints: the joints whose translations are wanted, as far as they are translated; all by default.
+
+    Returns:
+        Rotations (F, P, 4); the joints that are translated (U,); their translations (F, U, 3).
+    """
+    rotations, translated, translations = _configured(motion, skeleton, slots, joints)
+    return rotations, *_without_still_bones(motion, skeleton, translated, translations)
 
 
 def changed_at_home(
@@ -203,21 +227,24 @@ def _moved(motion: Motion, change: Callable[[_core.Forest], _core.Forest]) -> Mo
 
 
 def _configured(
-    motion: Motion, skeleton: Skeleton
+    motion: Motion,
+    skeleton: Skeleton,
+    slots: NDArray[np.int32] | None,
+    joints: NDArray[np.int32] | None,
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64]]:
     """Rotations, the joints that may be translated, and their translations, as ``skeleton`` arranges them."""
     before, after, offsets = motion.skeleton.forest, skeleton.forest, motion.skeleton.offsets
-    threads = 0 if motion.frame_count * skeleton.joint_count > _THREADING_PAYS else 1
+    threads = 0 if motion.frame_count * skeleton.joint_count > THREADING_PAYS else 1
     source = motion.source
     if isinstance(source, Rows) and "pose" not in motion.__dict__:
         layout = source.layout
         return _core.configure_euler(
             before, after, offsets, layout.translated, source.values, layout.rotation_columns,
-            layout.rotation_axes, layout.translation_columns, layout.adds_offset, threads,
+            layout.rotation_axes, layout.translation_columns, layout.adds_offset, threads, slots, joints,
         )  # fmt: skip
     pose = motion.pose
     return _core.configure(
-        before, after, offsets, pose.translated, pose.rotations, pose.translations, threads
+        before, after, offsets, pose.translated, pose.rotations, pose.translations, threads, slots, joints
     )
 
 
@@ -244,4 +271,4 @@ def _without_still_bones(
         if as_offset.all() and int(skeleton.forest.bones[translated[k]]) not in moving:
             still.append(k)
     kept = np.setdiff1d(np.arange(len(translated)), still)
-    return translated[kept], np.ascontiguousarray(translations[:, kept])
+    return translated[kept], translations.take(kept, axis=1) if still else translations

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gmr.arrays import read_only
 from gmr.errors import SkeletonError
-from gmr.forest import carried, configuration
+from gmr.forest import carried, configuration, configured
 from gmr.frames import Pose
 from gmr.skeleton import Skeleton
 
@@ -57,8 +57,7 @@ def select(motion: Motion, joints: Iterable[Joint]) -> Motion:
     freed = np.flatnonzero(
         (above >= 0) & np.isin(above, kept, invert=True) & np.isin(np.arange(len(above)), kept)
     )
-    whole = carried(motion, configuration(skeleton, freed.tolist(), ()))
-    part = _only(replace(whole, dropped=None), kept)
+    part = _only(motion, configuration(skeleton, freed.tolist(), ()), kept)
 
     places = np.full(skeleton.joint_count, -1)
     places[kept] = np.arange(len(kept))
@@ -68,27 +67,28 @@ def select(motion: Motion, joints: Iterable[Joint]) -> Motion:
     return carried(part, configuration(part.skeleton, cut, roots))
 
 
-def _only(motion: Motion, kept: NDArray[np.int32]) -> Motion:
-    """The kept joints, none of which hangs on one that is not kept."""
-    skeleton, pose = motion.skeleton, motion.pose
-    joints = np.full(skeleton.joint_count + 1, -1, np.int32)
-    joints[kept] = np.arange(len(kept))
-    used = np.unique(skeleton.slots[kept])
+def _only(motion: Motion, whole: Skeleton, kept: NDArray[np.int32]) -> Motion:
+    """The kept joints, none of which hangs on one that is not kept in the configuration ``whole``."""
+    if whole.home is None and isinstance(motion.source, Pose) and motion.source.rows is not None:
+        motion = carried(motion, whole)
+    joints = _renumbering(whole.joint_count, kept)
+    used = np.unique(whole.slots[kept])
     used = used[used >= 0]
-    slots = np.full(skeleton.slot_count + 1, -1, np.int32)
-    slots[used] = np.arange(len(used))
     part = Skeleton(
-        names=tuple(skeleton.names[joint] for joint in kept),
-        parents=joints[skeleton.parents[kept]],
-        offsets=read_only(skeleton.offsets[kept]),
-        slots=slots[skeleton.slots[kept]],
+        names=tuple(whole.names[joint] for joint in kept),
+        parents=joints[whole.parents[kept]],
+        offsets=read_only(whole.offsets[kept]),
+        slots=_renumbering(whole.slot_count, used)[whole.slots[kept]],
         slot_count=len(used),
-        ends=skeleton.ends[kept],
+        ends=whole.ends[kept],
     )
-    moving = np.flatnonzero(np.isin(pose.translated, kept))
-    source = Pose(
-        read_only(np.ascontiguousarray(pose.rotations[:, used])),
-        joints[pose.translated[moving]],
-        read_only(np.ascontiguousarray(pose.translations[:, moving])),
-    )
-    return replace(motion, skeleton=part, source=source)
+    rotations, translated, translations = configured(motion, whole, used, kept)
+    source = Pose(read_only(rotations), joints[translated], read_only(translations))
+    return replace(motion, skeleton=part, source=source, dropped=None)
+
+
+def _renumbering(count: int, kept: NDArray[np.int32]) -> NDArray[np.int32]:
+    """(count + 1,) the new index of each old one, -1 for those not kept and, as the last entry, for -1."""
+    found = np.full(count + 1, -1, np.int32)
+    found[kept] = np.arange(len(kept))
+    return found

@@ -26,6 +26,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         translated: &[0],
         pose: Pose::Quaternions { rotations: &rotations, normalize: false, translations: &shoulder },
         frame_count,
+        slots: None,
+        joints: None,
         threads: 1,
     };
     assert_eq!(job.translated_after(), [2]);

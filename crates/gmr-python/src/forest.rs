@@ -87,9 +87,9 @@ fn named(result: Result<Forest, ForestError>, names: &Bound<'_, PyAny>) -> PyRes
 }
 
 /// Rotations (F, S, 4), the joints translated (U,) and their translations (F, U, 3) in `to`, of frames in `from` that
-/// hold quaternions.
+/// hold quaternions; of some of its slots and joints alone where they are given.
 #[pyfunction]
-#[pyo3(signature = (from, to, offsets, translated, rotations, translations, threads=1))]
+#[pyo3(signature = (from, to, offsets, translated, rotations, translations, threads=1, slots=None, joints=None))]
 #[allow(clippy::too_many_arguments)]
 fn configure<'py>(
     py: Python<'py>,
@@ -100,19 +100,21 @@ fn configure<'py>(
     rotations: PyReadonlyArray3<'py, f64>,
     translations: PyReadonlyArray3<'py, f64>,
     threads: usize,
+    slots: Option<PyReadonlyArray1<'py, i32>>,
+    joints: Option<PyReadonlyArray1<'py, i32>>,
 ) -> PyResult<Answer<'py>> {
     let rotations = input::<f64>(rotations.as_any(), "rotations", 4)?;
     let translations = input::<f64>(translations.as_any(), "translations", 3)?;
     let frame_count = rotations.shape()[0];
     let (rotations, translations) = (rotations.as_slice()?, translations.as_slice()?);
     let pose = Pose::Quaternions { rotations, normalize: false, translations };
-    carried(py, from, to, &offsets, &to_vec(&translated), pose, frame_count, threads)
+    carried(py, from, to, &offsets, &to_vec(&translated), pose, frame_count, threads, [slots, joints])
 }
 
 /// As `configure`, of frames that are rows (F, C) as files hold them.
 #[pyfunction]
 #[pyo3(signature = (from, to, offsets, translated, rows, rotation_columns, rotation_axes, translation_columns,
-    adds_offset, threads=1))]
+    adds_offset, threads=1, slots=None, joints=None))]
 #[allow(clippy::too_many_arguments)]
 fn configure_euler<'py>(
     py: Python<'py>,
@@ -126,6 +128,8 @@ fn configure_euler<'py>(
     translation_columns: PyReadonlyArray2<'py, i32>,
     adds_offset: bool,
     threads: usize,
+    slots: Option<PyReadonlyArray1<'py, i32>>,
+    joints: Option<PyReadonlyArray1<'py, i32>>,
 ) -> PyResult<Answer<'py>> {
     let [columns, places] = [
         triples(&rotation_columns, "rotation_columns")?,
@@ -136,7 +140,7 @@ fn configure_euler<'py>(
     let (frame_count, column_count) = (rows.shape()[0], rows.shape()[1]);
     let rows = rows.as_slice()?;
     let pose = Pose::Rows { rows, column_count, angles, translation_columns: &places, adds_offset };
-    carried(py, from, to, &offsets, &to_vec(&translated), pose, frame_count, threads)
+    carried(py, from, to, &offsets, &to_vec(&translated), pose, frame_count, threads, [slots, joints])
 }
 
 type Answer<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray3<f64>>);
@@ -151,11 +155,15 @@ fn carried<'py>(
     pose: Pose<'_, f64>,
     frame_count: usize,
     threads: usize,
+    wanted: [Option<PyReadonlyArray1<'py, i32>>; 2],
 ) -> PyResult<Answer<'py>> {
     let (from, to, offsets) = (&from.inner, &to.inner, offsets.as_slice()?);
-    let job = Configure { from, to, offsets, translated, pose, frame_count, threads };
+    let [slots, joints] = wanted.map(|indices| indices.map(|indices| to_vec(&indices)));
+    let (slots, joints) = (slots.as_deref(), joints.as_deref());
+    let job = Configure { from, to, offsets, translated, pose, frame_count, slots, joints, threads };
     let after = job.translated_after();
-    let rotations = zeros::<f64>(py, [frame_count, to.topology().slot_count(), 4])?;
+    let slot_count = slots.map_or(to.topology().slot_count(), <[i32]>::len);
+    let rotations = zeros::<f64>(py, [frame_count, slot_count, 4])?;
     let translations = zeros::<f64>(py, [frame_count, after.len(), 3])?;
     {
         let (mut rotations, mut translations) = (rotations.readwrite(), translations.readwrite());

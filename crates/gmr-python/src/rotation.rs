@@ -57,6 +57,24 @@ fn turned_euler_to_quaternions(
         .map_err(value_error)
 }
 
+/// Turns slots of `rotations` (F, S, 4) by other slots, in place and one after the other.
+#[pyfunction]
+#[pyo3(signature = (rotations, slots, by, inverse, threads=1))]
+fn turn_slots(
+    py: Python<'_>,
+    rotations: &Bound<'_, PyAny>,
+    slots: PyReadonlyArray1<'_, i32>,
+    by: PyReadonlyArray1<'_, i32>,
+    inverse: bool,
+    threads: usize,
+) -> PyResult<()> {
+    let mut rotations = output::<f64>(rotations, "rotations", 4)?;
+    let (slots, by, slot_count) = (to_vec(&slots), to_vec(&by), rotations.shape()[1]);
+    let pairs: Vec<(i32, i32)> = slots.into_iter().zip(by).collect();
+    let rotations = rotations.as_slice_mut()?;
+    py.detach(|| rotation::turn_slots(rotations, slot_count, &pairs, inverse, threads)).map_err(value_error)
+}
+
 /// Angles in degrees (F, S, 3) about the axes (S, 3) of each slot, from quaternions (F, S, 4) float64; continuous from
 /// frame to frame.
 #[pyfunction]
@@ -112,6 +130,7 @@ pub(crate) fn zeros<T: Element>(py: Python<'_>, shape: [usize; 3]) -> PyResult<B
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(euler_to_quaternions, module)?)?;
     module.add_function(wrap_pyfunction!(turned_euler_to_quaternions, module)?)?;
+    module.add_function(wrap_pyfunction!(turn_slots, module)?)?;
     module.add_function(wrap_pyfunction!(quaternions_to_euler, module)?)?;
     module.add_function(wrap_pyfunction!(slerp_frames, module)?)
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
-from gmr.bench import amc_text, bvh_text, forward_kinematics, gmr_files, search, trials
+from gmr.bench import amc_text, bvh_text, forward_kinematics, gmr_files, operations, roots, search, trials
 from gmr.bench.harness import Contest, Row, one_core, run_contest
 from gmr.bench.inputs import LARGE_FRAME_COUNT
 
@@ -21,6 +21,8 @@ CLAIMS: Final[dict[str, Callable[[int], Iterator[Contest]]]] = {
     "fk": forward_kinematics.positions,
     "fk-rows": forward_kinematics.positions_from_rows,
     "fk-frames": forward_kinematics.frame_cost,
+    "roots": roots.roots,
+    "operations": operations.operations,
     "search": search.near,
     "search-hard": search.hard,
     "search-rows": search.growth,

@@ -13,7 +13,7 @@ import click
 
 __all__ = ["gmr"]
 
-COMMANDS: Final = ("evaluate", "info", "convert", "bench", "demo")
+COMMANDS: Final = ("evaluate", "info", "convert", "roots", "bench", "demo")
 
 
 class Commands(click.Group):
@@ -54,6 +54,7 @@ def gmr() -> None:
     \b
     gmr info walk.bvh             what is in a file, and what is odd about it
     gmr convert takes/ out/ --fps 60 --mirror
+    gmr roots walk.bvh --set Hips,LeftHand,RightHand
     gmr evaluate takes/           what a set of locomotion clips can do, as a report
     gmr COMMAND --help            more examples
     """

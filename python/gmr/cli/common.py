@@ -25,11 +25,13 @@ __all__ = [
     "Unit",
     "files_of",
     "finished",
+    "naming",
     "progress",
     "read_input",
     "read_noting",
     "reading_options",
     "say",
+    "write_output",
 ]
 
 Item = TypeVar("Item")
@@ -219,3 +221,40 @@ def progress(items: Iterable[Item], label: str) -> Iterator[Iterable[Item]]:
         return
     with click.progressbar(held, label=label, file=sys.stderr) as bar:
         yield bar
+
+
+@contextmanager
+def naming(motion: Motion) -> Iterator[None]:
+    """An error about joints or frames names the motion too."""
+    try:
+        yield
+    except GmrError as error:
+        if str(motion.name) in str(error):
+            raise
+        raise GmrError(f"{motion.name}: {error}") from error
+
+
+def write_output(motion: Motion, out: Path | str, format: str | None = None) -> list[str]:
+    """Writes a motion, by suffix; ``-`` is standard output, in ``format``. Makes folders where none are.
+
+    Returns:
+        The file that was written beside, if one was.
+    """
+    from gmr.formats import write
+    from gmr.formats.registry import format_of_file
+
+    if out == STDIO:
+        write(motion, sys.stdout.buffer, format)
+        sys.stdout.buffer.flush()
+        return []
+    if isinstance(out, Path):
+        try:
+            out.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise GmrError(f"{out}: its folder cannot be made: {error.strerror}") from error
+    write(motion, out)
+    chosen = format_of_file(str(out))
+    if chosen.name == "ASF" and motion.frame_count:
+        say(f"{out} holds the skeleton alone; write an .amc for the frames")
+    second = chosen.place_beside(Path(out))
+    return [] if second is None else [str(second)]

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,12 +14,15 @@ from gmr.cli.common import (
     Rate,
     Unit,
     files_of,
+    naming,
     progress,
     read_noting,
     reading_options,
     say,
+    write_output,
 )
 from gmr.cli.markers import Fitting, fitting_options
+from gmr.cli.roots import Joints
 
 if TYPE_CHECKING:
     from gmr.markers import Markers
@@ -40,6 +40,7 @@ class _Changes:
     from_unit: float | None
     drop_dummies: bool
     mirror: bool
+    roots: tuple[str, ...] | None
 
 
 @click.command(short_help="Convert motions: rate, unit, mirror image, dummies.")
@@ -56,6 +57,7 @@ class _Changes:
 @click.option(
     "--drop-dummies", is_flag=True, help="Leave out zero-length joints, all but those that BVH needs."
 )
+@click.option("--roots", type=Joints(), help="Make just these joints roots: see gmr roots.")
 @reading_options
 @fitting_options
 def convert(
@@ -66,6 +68,7 @@ def convert(
     from_unit: float | None,
     mirror: bool,
     drop_dummies: bool,
+    roots: tuple[str, ...] | None,
     positions: str,
     asf: str | None,
     amc_fps: float | None,
@@ -86,12 +89,13 @@ def convert(
       gmr convert walk.bvh lean.bvh --drop-dummies
       gmr convert walk.bvh walk.amc
       gmr convert walk.bvh walk.gmr         GMR's own format: text, or binary as .gmrb
+      gmr convert walk.bvh neck.bvh --roots Neck
       gmr convert - - --fps 30 < walk.bvh > walk30.bvh
       gmr convert walk.c3d walk.bvh         a motion from markers; see gmr info walk.c3d first
     """
     if from_unit is not None and unit is None:
         raise click.UsageError("--from-unit says what --unit converts from; give --unit too")
-    changes = _Changes(fps, unit, from_unit, drop_dummies, mirror)
+    changes = _Changes(fps, unit, from_unit, drop_dummies, mirror, roots)
     failures = Failures()
     guessed: dict[str, list[str]] = {}
     beside: list[str] = []
@@ -102,9 +106,9 @@ def convert(
                 for warning in warnings:
                     say(warning)
                 motion = _fitted(motion, fitting)
-                with _naming(motion):
+                with naming(motion):
                     motion = _changed(motion, changes, guessed)
-                beside += _write(motion, out)
+                beside += write_output(motion, out)
     for guess, names in guessed.items():
         say(f"{_several(names)} taken to be in {guess}; state another unit with --from-unit")
     if beside:
@@ -152,25 +156,14 @@ def _fitted(found: Motion | Markers, fitting: Fitting) -> Motion:
     return fitting.motion(found) if isinstance(found, Markers) else found
 
 
-@contextmanager
-def _naming(motion: Motion) -> Iterator[None]:
-    """An error about joints or frames names the motion too."""
-    from gmr.errors import GmrError
-
-    try:
-        yield
-    except GmrError as error:
-        if str(motion.name) in str(error):
-            raise
-        raise GmrError(f"{motion.name}: {error}") from error
-
-
 def _changed(motion: Motion, changes: _Changes, guessed: dict[str, list[str]]) -> Motion:
     """The motion after all that was asked for; a unit that had to be guessed is noted in ``guessed``."""
     if changes.mirror:
         motion = motion.mirror()
     if changes.drop_dummies:
         motion = motion.drop_dummies()
+    if changes.roots is not None:
+        motion = motion.with_roots(changes.roots)
     if changes.fps is not None:
         motion = motion.resample(changes.fps)
     if changes.unit is not None:
@@ -198,26 +191,3 @@ def _in_known_unit(motion: Motion, stated: float | None, guessed: dict[str, list
 def _several(names: list[str]) -> str:
     """One name, or a count of several."""
     return names[0] if len(names) == 1 else f"{len(names)} motions ({names[0]}, ...)"
-
-
-def _write(motion: Motion, out: Path | str) -> list[str]:
-    """Writes the motion, and tells the file that was written beside, if one was."""
-    from gmr.errors import GmrError
-    from gmr.formats import write
-    from gmr.formats.registry import format_of_file
-
-    if out == STDIO:
-        write(motion, sys.stdout.buffer)
-        sys.stdout.buffer.flush()
-        return []
-    if isinstance(out, Path):
-        try:
-            out.parent.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise GmrError(f"{out}: its folder cannot be made: {error.strerror}") from error
-    write(motion, out)
-    chosen = format_of_file(str(out))
-    if chosen.name == "ASF" and motion.frame_count:
-        say(f"{out} holds the skeleton alone; write an .amc for the frames")
-    second = chosen.place_beside(Path(out))
-    return [] if second is None else [str(second)]

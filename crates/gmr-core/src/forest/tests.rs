@@ -101,6 +101,8 @@ impl Case {
                 translations: &motion.translations,
             },
             frame_count: self.frame_count,
+            slots: None,
+            joints: None,
             threads: 1,
         }
     }
@@ -225,6 +227,32 @@ proptest! {
     }
 
     #[test]
+    fn some_of_the_answer_is_that_part_of_all_of_it(case in any_case(), picks in any::<u64>()) {
+        let home = case.motion();
+        let forest = case.moves.iter().fold(home.forest.clone(), |forest, step| moved(&forest, *step).unwrap_or(forest));
+        let all = case.carried(Isa::current(), 1, &home, &forest);
+        let picked = |count: usize| (0..count as i32).filter(|k| picks >> (k % 64) & 1 == 1).collect::<Vec<_>>();
+        let (slots, joints) = (picked(forest.topology().slot_count()), picked(case.home.joint_count()));
+        let offsets = case.offsets(&home.forest);
+        let job = Configure { slots: Some(&slots), joints: Some(&joints), ..case.job(&home, &forest, &offsets) };
+        let translated = job.translated_after();
+        let mut rotations = vec![f64::NAN; case.frame_count * slots.len() * 4];
+        let mut translations = vec![f64::NAN; case.frame_count * translated.len() * 3];
+        configure(&job, Configured { rotations: &mut rotations, translations: &mut translations }).unwrap();
+        let columns = |wanted: &[i32], of: &[i32]| -> Vec<usize> {
+            of.iter().enumerate().filter(|(_, item)| wanted.contains(item)).map(|(k, _)| k).collect()
+        };
+        let part = |numbers: &[f64], width: usize, size: usize, columns: &[usize]| -> Vec<f64> {
+            let rows = (0..case.frame_count).map(|frame| &numbers[frame * width * size..]);
+            rows.flat_map(|row| columns.iter().flat_map(|c| row[c * size..(c + 1) * size].to_vec())).collect()
+        };
+        let every: Vec<i32> = (0..forest.topology().slot_count() as i32).collect();
+        prop_assert_eq!(rotations, part(&all.rotations, every.len(), 4, &columns(&slots, &every)));
+        let moving = columns(&joints, &all.translated);
+        prop_assert_eq!(translations, part(&all.translations, all.translated.len(), 3, &moving));
+    }
+
+    #[test]
     fn shifts_undo_themselves_and_joins_undo_splits(case in any_case(), joint in any::<prop::sample::Index>()) {
         let joint = joint.index(case.home.joint_count());
         let mut forest = Forest::new(&case.home);
@@ -330,6 +358,8 @@ fn frames_come_straight_from_rows_of_a_file() {
             translated: &[0],
             pose: pose(is_rows),
             frame_count: 40,
+            slots: None,
+            joints: None,
             threads: 1,
         };
         let mut rotations = vec![0.0; 40 * to.topology().slot_count() * 4];
@@ -350,6 +380,8 @@ fn forests_of_different_skeletons_are_not_confused() {
         translated: &[0],
         pose: Pose::Quaternions { rotations: &[], normalize: false, translations: &[] },
         frame_count: 0,
+        slots: None,
+        joints: None,
         threads: 1,
     };
     let out = Configured::<f64> { rotations: &mut [], translations: &mut [] };

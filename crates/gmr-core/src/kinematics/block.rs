@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use super::plan::Plan;
+use super::roots::Parts;
 use super::source::{Quaternions, Rows, Source};
 use super::{ForwardKinematics, Pose, World};
-use crate::lanes::rows::{TargetRows, blocks};
+use crate::lanes::rows::{self, TargetRows, blocks};
 use crate::lanes::{Kernel, Lanes, Real};
 use crate::rotation::{multiply, rotate};
 
@@ -13,6 +14,7 @@ use crate::rotation::{multiply, rotate};
 pub(super) struct Frames<'a, 'b, T> {
     pub(super) job: &'a ForwardKinematics<'b, T>,
     pub(super) plan: &'a Plan<T>,
+    pub(super) parts: &'a Parts,
     pub(super) frames: Range<usize>,
     /// Room for these frames only.
     pub(super) world: World<'a, T>,
@@ -24,7 +26,7 @@ impl<T: Real> Kernel<T> for Frames<'_, '_, T> {
     #[inline(always)]
     fn run<L: Lanes<Real = T>>(self) {
         match self.job.pose {
-            Pose::Quaternions { .. } => each_block(Quaternions::<L>::new(self.job, self.plan), self),
+            Pose::Quaternions { .. } => each_block(Quaternions::<L>::new(self.job, self.plan, &[]), self),
             Pose::Rows { .. } => each_block(Rows::<L>::new(self.job, self.plan, &[]), self),
         }
     }
@@ -32,22 +34,27 @@ impl<T: Real> Kernel<T> for Frames<'_, '_, T> {
 
 #[inline(always)]
 fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Real>) {
-    let Frames { plan, frames: range, world, is_large, .. } = work;
+    let Frames { job, plan, parts, frames: range, world, is_large } = work;
     let zero = L::splat(L::Real::ZERO);
     let mut rotations = vec![[zero, zero, zero, L::splat(L::Real::ONE)]; plan.turns.len()];
     let mut positions = vec![[zero; 3]; plan.bones.len()];
-    let position_columns = columns(plan.joints_out.iter().copied(), 3);
+    let joints = parts.places.iter().copied().zip(plan.joints_out.iter().copied());
     // The first turn is none: its rotation stays the identity.
-    let rotation_columns = columns(plan.slots_out.iter().map(|turn| turn.unwrap_or(0)), 4);
-    let mut positions_out =
-        TargetRows::new(world.positions.unwrap_or(&mut []), position_columns.len(), is_large);
-    let mut rotations_out =
-        TargetRows::new(world.rotations.unwrap_or(&mut []), rotation_columns.len(), is_large);
+    let slots = plan.slots_out.iter().map(|turn| turn.unwrap_or(0)).enumerate();
+    let (position_width, rotation_width) = (parts.width(), 4 * plan.slots_out.len());
+    let position_groups = groups(joints, 3, position_width);
+    let rotation_groups = groups(slots, 4, rotation_width);
+    let mut positions_out = TargetRows::new(world.positions.unwrap_or(&mut []), position_width, is_large);
+    let mut rotations_out = TargetRows::new(world.rotations.unwrap_or(&mut []), rotation_width, is_large);
     for block in blocks::<L>(range.len()) {
-        source.load(range.start + block.start..range.start + block.end);
+        let frames = range.start + block.start..range.start + block.end;
+        source.load(frames.clone());
         solve(plan, &source, &mut rotations, &mut positions);
-        write(&position_columns, positions.as_flattened(), &mut positions_out, &block);
-        write(&rotation_columns, rotations.as_flattened(), &mut rotations_out, &block);
+        let (rows, stride) = positions_out.block(&block, L::WIDTH);
+        store(&position_groups, positions.as_flattened(), rows, stride);
+        parts.copy(job, frames, rows, stride);
+        positions_out.finish(&block, L::WIDTH);
+        write(&rotation_groups, rotations.as_flattened(), &mut rotations_out, &block);
     }
 }
 
@@ -60,7 +67,7 @@ pub(crate) fn solve<L: Lanes, S: Source<L>>(
     positions: &mut [[L; 3]],
 ) {
     for (index, turn) in plan.turns.iter().enumerate() {
-        source.prefetch(index, plan.turns.len());
+        source.prefetch(index);
         if let Some(slot) = turn.slot {
             let local = source.rotation(slot);
             rotations[index] = match turn.above {
@@ -87,27 +94,52 @@ fn add<L: Lanes>(a: [L; 3], b: [L; 3]) -> [L; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// Where each number of a row of the answer stands among the components computed.
-pub(crate) fn columns(items: impl Iterator<Item = usize>, components: usize) -> Vec<usize> {
-    items.flat_map(|item| components * item..components * (item + 1)).collect()
+/// Four columns of the answer, and where their numbers stand among the components computed.
+pub(crate) struct Group {
+    first: usize,
+    values: [usize; 4],
 }
 
-/// Writes these columns of `values`, four at a time; the last four overlap those before where they must.
+/// The groups that put items, of so many components, in their places in a row of `width` numbers.
+///
+/// They cover the columns of these items; what they touch besides must be written after them.
+pub(crate) fn groups(
+    items: impl Iterator<Item = (usize, usize)>,
+    components: usize,
+    width: usize,
+) -> Vec<Group> {
+    let mut values = vec![None; width];
+    for (place, item) in items {
+        (0..components).for_each(|c| values[components * place + c] = Some(components * item + c));
+    }
+    let is_wanted: Vec<bool> = values.iter().map(Option::is_some).collect();
+    let value = |column: usize| values.get(column).copied().flatten();
+    let group = |first: usize| {
+        let known = (first..first + 4).find_map(value).unwrap_or(0);
+        Group { first, values: std::array::from_fn(|k| value(first + k).unwrap_or(known)) }
+    };
+    rows::groups(&is_wanted).into_iter().map(group).collect()
+}
+
+/// Writes a block of rows.
 #[inline(always)]
 pub(crate) fn write<L: Lanes>(
-    columns: &[usize],
+    groups: &[Group],
     values: &[L],
     out: &mut TargetRows<'_, L::Real>,
     block: &Range<usize>,
 ) {
-    if columns.is_empty() {
-        return;
+    if !groups.is_empty() {
+        let (rows, stride) = out.block(block, L::WIDTH);
+        store(groups, values, rows, stride);
+        out.finish(block, L::WIDTH);
     }
-    let last = columns.len() - 1;
-    let (target, stride) = out.block(block, L::WIDTH);
-    for group in (0..columns.len()).step_by(4).map(|column| column.min(columns.len().saturating_sub(4))) {
-        let value = |k: usize| values[columns[last.min(group + k)]];
-        L::store_columns([value(0), value(1), value(2), value(3)], &mut target[group..], stride);
+}
+
+/// Writes groups of columns into rows that begin `stride` apart.
+#[inline(always)]
+fn store<L: Lanes>(groups: &[Group], values: &[L], rows: &mut [L::Real], stride: usize) {
+    for Group { first, values: [a, b, c, d] } in groups {
+        L::store_columns([values[*a], values[*b], values[*c], values[*d]], &mut rows[*first..], stride);
     }
-    out.finish(block, L::WIDTH);
 }

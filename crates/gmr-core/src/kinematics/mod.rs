@@ -26,6 +26,7 @@ mod tests;
 
 use block::Frames;
 use plan::Plan;
+use roots::Parts;
 
 /// Where the rotations and translations of each frame come from.
 #[derive(Debug, Clone, Copy)]
@@ -112,9 +113,12 @@ pub fn forward_kinematics_on<T: Real>(
     if !isa.is_available() {
         return Err(JobError::Isa(isa));
     }
-    let plan = Plan::new(job, world.positions.is_some(), world.rotations.is_some())?;
+    let joints = plan::asked_joints(job, world.positions.is_some())?;
+    let parts = Parts::new(job, &joints)?;
+    let solving = ForwardKinematics { joints: Some(&parts.solved), ..*job };
+    let plan = Plan::new(&solving, world.positions.is_some(), world.rotations.is_some())?;
     check_poses(job)?;
-    let (position_width, rotation_width) = (plan.joints_out.len() * 3, plan.slots_out.len() * 4);
+    let (position_width, rotation_width) = (joints.len() * 3, plan.slots_out.len() * 4);
     if let Some(positions) = &world.positions {
         ShapeError::check("positions", job.frame_count * position_width, positions.len())?;
     }
@@ -122,7 +126,7 @@ pub fn forward_kinematics_on<T: Real>(
         ShapeError::check("rotations out", job.frame_count * rotation_width, rotations.len())?;
     }
 
-    let copied = roots::translated_roots(job, &plan);
+    let is_copied = plan.joints_out.is_empty() && plan.slots_out.is_empty();
     let is_large = world.positions.as_deref().is_some_and(cache::is_large)
         || world.rotations.as_deref().is_some_and(cache::is_large);
     let piece = if thread_count(job.threads, usize::MAX) == 1 { job.frame_count } else { FRAMES_PER_PIECE };
@@ -131,10 +135,10 @@ pub fn forward_kinematics_on<T: Real>(
     for_each_piece(job.frame_count.div_ceil(piece.max(1)), job.threads, |index| {
         let frames = index * piece..job.frame_count.min((index + 1) * piece);
         let world = World { positions: take(&positions, index), rotations: take(&rotations, index) };
-        match (&copied, isa) {
-            (Some(places), _) => roots::copy(job, places, frames, world),
-            (None, Isa::Scalar) => scalar::run(job, &plan, frames, world),
-            (None, _) => T::dispatch(isa, Frames { job, plan: &plan, frames, world, is_large }),
+        match isa {
+            _ if is_copied => parts.copy_all(job, frames, world),
+            Isa::Scalar => scalar::run(job, &plan, &parts, frames, world),
+            _ => T::dispatch(isa, Frames { job, plan: &plan, parts: &parts, frames, world, is_large }),
         }
     });
     Ok(())

@@ -49,15 +49,13 @@ impl<T: Real> Plan<T> {
         let (joint_count, slot_count) = (topology.joint_count(), topology.slot_count());
         ShapeError::check("offsets", 3 * joint_count, job.offsets.len())?;
         let translated = places(job.translated, joint_count)?;
-        let joints = asked("joints", job.joints, joint_count, has_positions)?;
+        let joints = asked_joints(job, has_positions)?;
         let slots = asked("rotation_slots", job.rotation_slots, slot_count, has_rotations)?;
-        if let Some(at) = joints.iter().position(|&joint| joint == NONE) {
-            return Err(JobError::Index { what: "joints", at, found: NONE.into(), count: joint_count });
-        }
 
         let needed_joints = with_ancestors(&joints, topology.parents());
-        let turning =
-            (0..joint_count).filter(|&joint| needed_joints[joint]).map(|j| topology.world_slots()[j]);
+        // A root's own rotation moves nothing but what hangs below.
+        let is_turned = |&joint: &usize| needed_joints[joint] && topology.parents()[joint] != NONE;
+        let turning = (0..joint_count).filter(is_turned).map(|joint| topology.world_slots()[joint]);
         let wanted: Vec<i32> = slots.iter().copied().chain(turning).collect();
         let needed_slots = with_ancestors(&wanted, topology.slot_parents());
 
@@ -122,7 +120,7 @@ fn index(index: i32) -> Option<usize> {
 }
 
 /// Where in `listed` each joint stands.
-fn places(listed: &[i32], joint_count: usize) -> Result<Vec<Option<usize>>, JobError> {
+pub(super) fn places(listed: &[i32], joint_count: usize) -> Result<Vec<Option<usize>>, JobError> {
     let mut places = vec![None; joint_count];
     for (at, &joint) in listed.iter().enumerate() {
         let place = index(joint).and_then(|joint| places.get_mut(joint));
@@ -130,6 +128,19 @@ fn places(listed: &[i32], joint_count: usize) -> Result<Vec<Option<usize>>, JobE
         *place.ok_or(JobError::Index { what: "translated", at, found, count: joint_count })? = Some(at);
     }
     Ok(places)
+}
+
+/// The joints whose positions are asked for; none where there is no room for them.
+pub(super) fn asked_joints<T>(
+    job: &ForwardKinematics<'_, T>,
+    has_positions: bool,
+) -> Result<Vec<i32>, JobError> {
+    let count = job.topology.joint_count();
+    let joints = asked("joints", job.joints, count, has_positions)?;
+    match joints.iter().position(|&joint| joint == NONE) {
+        Some(at) => Err(JobError::Index { what: "joints", at, found: NONE.into(), count }),
+        None => Ok(joints),
+    }
 }
 
 /// What is asked for, or all there is; nothing where there is no room for it.

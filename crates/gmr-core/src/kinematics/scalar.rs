@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::plan::{Bone, Plan};
+use super::roots::Parts;
 use super::{ForwardKinematics, Pose, World};
 use crate::lanes::Real;
 use crate::rotation::{multiply, normalize, rotate};
@@ -11,6 +12,7 @@ use crate::rotation::{multiply, normalize, rotate};
 pub(super) fn run<T: Real>(
     job: &ForwardKinematics<'_, T>,
     plan: &Plan<T>,
+    parts: &Parts,
     frames: Range<usize>,
     mut world: World<'_, T>,
 ) {
@@ -19,8 +21,10 @@ pub(super) fn run<T: Real>(
     for (row, frame) in frames.enumerate() {
         solve(job, plan, frame, &mut rotations, &mut positions);
         if let Some(out) = &mut world.positions {
-            let room = &mut out.as_chunks_mut::<3>().0[row * plan.joints_out.len()..];
-            room.iter_mut().zip(&plan.joints_out).for_each(|(p, &bone)| *p = positions[bone]);
+            let room = &mut out[row * parts.width()..][..parts.width()];
+            let solved = parts.places.iter().zip(&plan.joints_out);
+            solved.for_each(|(&place, &bone)| room.as_chunks_mut::<3>().0[place] = positions[bone]);
+            parts.copy(job, frame..frame + 1, room, parts.width());
         }
         if let Some(out) = &mut world.rotations {
             let room = &mut out.as_chunks_mut::<4>().0[row * plan.slots_out.len()..];

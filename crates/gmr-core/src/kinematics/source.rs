@@ -1,19 +1,23 @@
 //! Where a block of frames takes its local rotations and its bones' vectors from: quaternions, or rows of a file.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::plan::{Bone, Plan};
 use super::{ForwardKinematics, Pose};
 use crate::lanes::rows::{SourceRows, groups};
-use crate::lanes::{Lanes, Real};
+use crate::lanes::{Lanes, Real, cache};
 use crate::rotation::{EulerBlock, normalize};
+
+/// Numbers in a row of translations that need not be asked for: they lie close enough for the memory to see what comes.
+const FEW_TRANSLATIONS: usize = 24;
 
 /// Where a block's local rotations and its bones' vectors come from.
 pub(crate) trait Source<L: Lanes> {
     /// Takes in a block.
     fn load(&mut self, frames: Range<usize>);
-    /// Asks the memory for a share of the next block.
-    fn prefetch(&self, part: usize, parts: usize);
+    /// Asks the memory for the share of the next block that belongs to a turn.
+    fn prefetch(&self, turn: usize);
     /// A slot's local rotation.
     fn rotation(&self, slot: usize) -> [L; 4];
     /// The vector of the bone whose joint is the `place`th translated one.
@@ -37,11 +41,22 @@ pub(crate) struct Quaternions<'a, L: Lanes> {
     /// Columns of the translations, in groups of four that the job needs.
     groups: Vec<usize>,
     columns: Vec<L>,
+    /// Where the next block begins, in rotations and in translations.
+    next: [usize; 2],
+    /// How many of its numbers, or of the lines, each turn asks the memory for; none of so few that they come by
+    /// themselves.
+    shares: [usize; 2],
+    /// Where the rotations that are needed lie in a block, where these are few; else empty.
+    lines: Vec<usize>,
 }
 
 impl<'a, L: Lanes> Quaternions<'a, L> {
-    /// For the bones of `plan`.
-    pub(crate) fn new(job: &ForwardKinematics<'a, L::Real>, plan: &Plan<L::Real>) -> Self {
+    /// For the turns and bones of `plan`, and for these slots besides.
+    pub(crate) fn new(
+        job: &ForwardKinematics<'a, L::Real>,
+        plan: &Plan<L::Real>,
+        other_slots: &[usize],
+    ) -> Self {
         let Pose::Quaternions { rotations, normalize, translations } = job.pose else {
             unreachable!("made for quaternions only")
         };
@@ -50,12 +65,27 @@ impl<'a, L: Lanes> Quaternions<'a, L> {
         for place in plan.bones.iter().filter_map(|bone| bone.translated) {
             is_wanted[3 * place..][..3].fill(true);
         }
+        let slot_count = job.topology.slot_count();
+        let slots = plan.turns.iter().filter_map(|turn| turn.slot).chain(other_slots.iter().copied());
+        let slots: BTreeSet<usize> = slots.collect();
+        let is_sparse = 2 * slots.len() < slot_count;
+        let lines = if is_sparse { lines(rotations, slot_count, &slots, L::WIDTH) } else { vec![] };
+        let rotation_share = if is_sparse {
+            lines.len().div_ceil(plan.turns.len())
+        } else {
+            share::<L::Real, _>(4 * slot_count * L::WIDTH, plan)
+        };
+        let is_streamed = width < FEW_TRANSLATIONS;
+        let translation_share = if is_streamed { 0 } else { share::<L::Real, _>(width * L::WIDTH, plan) };
         Self {
-            rotations: SourceRows::new(rotations, 4 * job.topology.slot_count()),
+            rotations: SourceRows::new(rotations, 4 * slot_count),
             normalize,
             translations: SourceRows::new(translations, width),
             groups: groups(&is_wanted),
             columns: vec![L::splat(L::Real::ZERO); width.max(4)],
+            next: [0; 2],
+            shares: [rotation_share, translation_share],
+            lines,
         }
     }
 }
@@ -63,6 +93,8 @@ impl<'a, L: Lanes> Quaternions<'a, L> {
 impl<L: Lanes> Source<L> for Quaternions<'_, L> {
     #[inline(always)]
     fn load(&mut self, frames: Range<usize>) {
+        let next = frames.start + L::WIDTH;
+        self.next = [next * self.rotations.width(), next * self.translations.width()];
         self.rotations.block(&frames, L::WIDTH);
         let (block, stride) = self.translations.block(&frames, L::WIDTH);
         for &group in &self.groups {
@@ -72,8 +104,17 @@ impl<L: Lanes> Source<L> for Quaternions<'_, L> {
     }
 
     #[inline(always)]
-    fn prefetch(&self, part: usize, parts: usize) {
-        self.rotations.prefetch_next(L::WIDTH, part, parts);
+    fn prefetch(&self, turn: usize) {
+        let ([rotations, translations], [share, few]) = (self.next, self.shares);
+        if self.lines.is_empty() {
+            cache::prefetch(self.rotations.data(), rotations + turn * share, share);
+        } else {
+            let lines = self.lines.iter().skip(turn * share).take(share);
+            lines.for_each(|line| cache::prefetch(self.rotations.data(), rotations + line, 1));
+        }
+        if few > 0 {
+            cache::prefetch(self.translations.data(), translations + turn * few, few);
+        }
     }
 
     #[inline(always)]
@@ -90,9 +131,26 @@ impl<L: Lanes> Source<L> for Quaternions<'_, L> {
     }
 }
 
+/// How many of the numbers of a block of so many belong to each turn, so that it asks for whole cache lines.
+fn share<T, R: Real>(count: usize, plan: &Plan<R>) -> usize {
+    let line = cache::LINE / size_of::<T>();
+    count.div_ceil(plan.turns.len() * line) * line
+}
+
+/// Where these slots lie in a block of `height` rows: a number in each cache line that they touch.
+fn lines<T>(data: &[T], slot_count: usize, slots: &BTreeSet<usize>, height: usize) -> Vec<usize> {
+    let first = data.as_ptr().addr() / size_of::<T>();
+    let slots = (0..height).flat_map(|row| slots.iter().map(move |slot| 4 * (row * slot_count + slot)));
+    let mut lines: Vec<usize> = slots.flat_map(|start| [start, start + 3]).collect();
+    lines.dedup_by_key(|place| (first + *place) * size_of::<T>() / cache::LINE);
+    lines
+}
+
 /// Poses given as rows of degrees and positions.
 pub(crate) struct Rows<'a, L: Lanes> {
     rows: SourceRows<'a, f64>,
+    next: usize,
+    share: usize,
     euler: EulerBlock<L>,
     translation_columns: &'a [[i32; 3]],
     adds_offset: bool,
@@ -114,6 +172,8 @@ impl<'a, L: Lanes> Rows<'a, L> {
         let plain: Vec<usize> = plain.filter_map(|column| usize::try_from(column).ok()).collect();
         Self {
             rows: SourceRows::new(rows, column_count),
+            next: 0,
+            share: share::<f64, _>(column_count * L::WIDTH, plan),
             euler: EulerBlock::new(angles, slots, &plain, column_count),
             translation_columns,
             adds_offset,
@@ -124,12 +184,13 @@ impl<'a, L: Lanes> Rows<'a, L> {
 impl<L: Lanes> Source<L> for Rows<'_, L> {
     #[inline(always)]
     fn load(&mut self, frames: Range<usize>) {
+        self.next = (frames.start + L::WIDTH) * self.rows.width();
         self.euler.load(&mut self.rows, frames);
     }
 
     #[inline(always)]
-    fn prefetch(&self, part: usize, parts: usize) {
-        self.rows.prefetch_next(L::WIDTH, part, parts);
+    fn prefetch(&self, turn: usize) {
+        cache::prefetch(self.rows.data(), self.next + turn * self.share, self.share);
     }
 
     #[inline(always)]

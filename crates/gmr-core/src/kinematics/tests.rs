@@ -32,7 +32,11 @@ fn number() -> impl Strategy<Value = f64> {
 
 prop_compose! {
     fn any_case()(joint_count in 1_usize..24, frame_count in 0_usize..70, column_count in 1_usize..40)(
-        ups in prop::collection::vec(prop::option::weighted(0.95, any::<prop::sample::Index>()), joint_count),
+        ups in prop::collection::vec(any::<prop::sample::Index>(), joint_count),
+        root_marks in prop::collection::vec(0_u8..20, joint_count),
+        // Few roots, or long runs of them with joints below some.
+        roots_of_twenty in prop::sample::select(vec![1_u8, 10, 17]),
+        is_all_translated in any::<bool>(),
         slot_marks in prop::collection::vec(0_u8..20, joint_count),
         is_pre in any::<bool>(),
         offsets in prop::collection::vec(-2.0_f64..2.0, 3 * joint_count),
@@ -48,7 +52,7 @@ prop_compose! {
         column_count in Just(column_count),
     ) -> Case {
         let parents: Vec<i32> =
-            ups.iter().enumerate().map(|(j, up)| if j == 0 { -1 } else { up.map_or(-1, |up| up.index(j) as i32) }).collect();
+            (0..ups.len()).map(|j| if j == 0 || root_marks[j] < roots_of_twenty { -1 } else { ups[j].index(j) as i32 }).collect();
         let joint_count = parents.len();
         let slots: Vec<i32> = (0..joint_count)
             .map(|j| if slot_marks[j] == 0 { -1 } else if is_pre { j as i32 } else { parents[j] })
@@ -59,7 +63,7 @@ prop_compose! {
             let k = i.index(turning.len() + 1);
             turning.get(k).map_or(-1, |&slot| slot as i32)
         });
-        let translated: Vec<i32> = (0..joint_count as i32).filter(|&j| is_translated[j as usize]).collect();
+        let translated: Vec<i32> = (0..joint_count as i32).filter(|&j| is_all_translated || is_translated[j as usize]).collect();
         Case {
             rotation_slots: Some(slots.collect()),
             translation_columns: places[..translated.len()].to_vec(),

@@ -2,7 +2,7 @@
 //! speed depends on them; Miri, which knows neither, goes without.
 
 /// Bytes of a cache line.
-const LINE: usize = 64;
+pub(crate) const LINE: usize = 64;
 
 /// Whether an array outgrows the caches: then it is written past them, for it would not stay there, and fetching its
 /// lines in order to overwrite them costs a third of the memory's throughput.
@@ -10,12 +10,10 @@ pub(crate) fn is_large<T>(array: &[T]) -> bool {
     size_of_val(array) >= 4 << 20
 }
 
-/// Asks for the `part`th of `parts` equal shares of `source[start..start + count]`; what lies outside is left out.
+/// Asks for `source[start..start + count]`; what lies outside is left out.
 #[inline(always)]
-pub(crate) fn prefetch<T>(source: &[T], start: usize, count: usize, part: usize, parts: usize) {
-    let share = (count * size_of::<T>()).div_ceil(parts.max(1) * LINE) * LINE / size_of::<T>();
-    let from = start + part * share;
-    for at in (from..source.len().min(from + share)).step_by(LINE / size_of::<T>()) {
+pub(crate) fn prefetch<T>(source: &[T], start: usize, count: usize) {
+    for at in (start..source.len().min(start + count)).step_by(LINE / size_of::<T>()) {
         prefetch_line(&source[at]);
     }
 }

@@ -51,17 +51,22 @@ impl<'a, T: Copy + Default> SourceRows<'a, T> {
         self.current()
     }
 
+    /// All the rows.
+    #[inline(always)]
+    pub(crate) fn data(&self) -> &'a [T] {
+        self.data
+    }
+
+    /// Numbers in a row.
+    #[inline(always)]
+    pub(crate) fn width(&self) -> usize {
+        self.width
+    }
+
     /// The block asked for last.
     #[inline(always)]
     pub(crate) fn current(&self) -> (&[T], usize) {
         if self.is_copied { (&self.copy, self.width.max(4)) } else { (&self.data[self.start..], self.width) }
-    }
-
-    /// Asks the memory for the `part`th of `parts` shares of the block after this one.
-    #[inline(always)]
-    pub(crate) fn prefetch_next(&self, height: usize, part: usize, parts: usize) {
-        let count = height * self.width;
-        cache::prefetch(self.data, self.start + count, count, part, parts);
     }
 
     fn copy_rows(&mut self, rows: &Range<usize>, height: usize) {

@@ -8,6 +8,7 @@ mod euler_block;
 mod half_angle;
 mod quaternion;
 mod slerp;
+mod turn_slots;
 
 pub(crate) use euler::check_indices;
 pub use euler::{
@@ -19,3 +20,4 @@ pub use quaternion::{
     normalize, rotate, rotate_inverse,
 };
 pub use slerp::{slerp, slerp_frames};
+pub use turn_slots::turn_slots;

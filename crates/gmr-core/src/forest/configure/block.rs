@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::plan::{Plan, Turn, Vector};
-use crate::kinematics::block::{columns, solve, write};
+use crate::kinematics::block::{groups, solve, write};
 use crate::kinematics::source::{Quaternions, Rows, Source};
 use crate::kinematics::{ForwardKinematics, Pose, World};
 use crate::lanes::rows::{TargetRows, blocks};
@@ -26,7 +26,9 @@ impl<T: Real> Kernel<T> for Frames<'_, '_, T> {
     fn run<L: Lanes<Real = T>>(self) {
         let solving = &self.plan.solving;
         match self.job.pose {
-            Pose::Quaternions { .. } => each_block(Quaternions::<L>::new(self.job, solving), self),
+            Pose::Quaternions { .. } => {
+                each_block(Quaternions::<L>::new(self.job, solving, &self.plan.copied), self);
+            }
             Pose::Rows { .. } => {
                 each_block(Rows::<L>::new(self.job, solving, &self.plan.copied), self);
             }
@@ -43,10 +45,11 @@ fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Rea
     let mut positions = vec![[zero; 3]; plan.solving.bones.len()];
     let mut turned = vec![identity; plan.turns.len()];
     let mut moved = vec![[zero; 3]; plan.vectors.len()];
-    let (turned_columns, moved_columns) = (columns(0..turned.len(), 4), columns(0..moved.len(), 3));
-    let mut rotations_out = TargetRows::new(out.rotations.unwrap_or(&mut []), turned_columns.len(), is_large);
-    let mut translations_out =
-        TargetRows::new(out.positions.unwrap_or(&mut []), moved_columns.len(), is_large);
+    let (turned_width, moved_width) = (4 * turned.len(), 3 * moved.len());
+    let turned_groups = groups((0..turned.len()).zip(0..), 4, turned_width);
+    let moved_groups = groups((0..moved.len()).zip(0..), 3, moved_width);
+    let mut rotations_out = TargetRows::new(out.rotations.unwrap_or(&mut []), turned_width, is_large);
+    let mut translations_out = TargetRows::new(out.positions.unwrap_or(&mut []), moved_width, is_large);
     for block in blocks::<L>(range.len()) {
         source.load(range.start + block.start..range.start + block.end);
         solve(&plan.solving, &source, &mut rotations, &mut positions);
@@ -75,8 +78,8 @@ fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Rea
                 }
             };
         }
-        write(&turned_columns, turned.as_flattened(), &mut rotations_out, &block);
-        write(&moved_columns, moved.as_flattened(), &mut translations_out, &block);
+        write(&turned_groups, turned.as_flattened(), &mut rotations_out, &block);
+        write(&moved_groups, moved.as_flattened(), &mut translations_out, &block);
     }
 }
 

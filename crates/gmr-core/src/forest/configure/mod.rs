@@ -1,5 +1,7 @@
 //! A motion carried from one configuration of its skeleton to another, in one pass over the frames.
 
+use std::collections::HashSet;
+
 use crate::Isa;
 use crate::error::{JobError, ShapeError};
 use crate::kinematics::{self, ForwardKinematics, Pose, World};
@@ -30,6 +32,10 @@ pub struct Configure<'a, T> {
     pub pose: Pose<'a, T>,
     /// F.
     pub frame_count: usize,
+    /// (P,): the slots of `to` whose rotations are wanted; `None`: all.
+    pub slots: Option<&'a [i32]>,
+    /// The joints whose translations are wanted, as far as they are translated in `to`; `None`: all.
+    pub joints: Option<&'a [i32]>,
     /// How many threads share the frames; 0: all cores. The bits do not depend on it.
     pub threads: usize,
 }
@@ -37,18 +43,23 @@ pub struct Configure<'a, T> {
 /// Where the answer goes.
 #[derive(Debug)]
 pub struct Configured<'a, T> {
-    /// (F, S, 4): local rotations of the slots of `to`.
+    /// (F, P, 4): local rotations of the slots of `to` that are wanted.
     pub rotations: &'a mut [T],
     /// (F, U, 3): translations of the joints that [`Configure::translated_after`] lists.
     pub translations: &'a mut [T],
 }
 
 impl<T: Real> Configure<'_, T> {
-    /// (U,): the joints that are translated per frame in `to`, in their order: its roots, those whose bones are
-    /// translated in `from`, and those whose bones are cut in `from` and whole in `to`.
+    /// (U,): of the joints wanted those that are translated per frame in `to`, in their order: its roots, those whose
+    /// bones are translated in `from`, and those whose bones are cut in `from` and whole in `to`.
     #[must_use]
     pub fn translated_after(&self) -> Vec<i32> {
-        plan::translated_after(self.from, self.to, self.translated)
+        let mut found = plan::translated_after(self.from, self.to, self.translated);
+        if let Some(joints) = self.joints {
+            let wanted: HashSet<i32> = joints.iter().copied().collect();
+            found.retain(|joint| wanted.contains(joint));
+        }
+        found
     }
 
     fn kinematics<'b>(&'b self, joints: &'b [i32], slots: &'b [i32]) -> ForwardKinematics<'b, T> {

@@ -57,6 +57,7 @@ pub(super) fn wanted<T: Real>(job: &Configure<'_, T>) -> Result<Wanted, JobError
         return Err(JobError::OtherForest);
     }
     crate::rotation::check_indices("translated", job.translated, count)?;
+    check_slots(job)?;
     let is_lacking = |joint: &i32| job.from.topology().parents()[*joint as usize] == NONE;
     if let Some(joint) = (0..count as i32).filter(is_lacking).find(|joint| !job.translated.contains(joint)) {
         return Err(JobError::RootAtRest { joint: joint as usize });
@@ -64,11 +65,11 @@ pub(super) fn wanted<T: Real>(job: &Configure<'_, T>) -> Result<Wanted, JobError
     let slot_of = slots_by_world(job.from);
     let known = known(job.from);
     let mut slots = vec![];
-    for span in job.to.spans().iter().flatten().filter(|span| !known.contains_key(span)) {
+    for span in spans(job).filter_map(|(_, span)| span).filter(|span| !known.contains_key(span)) {
         slots.extend([span.above, span.own].iter().filter_map(|world| slot_of.get(world)));
     }
     let mut joints = vec![];
-    for joint in translated_after(job.from, job.to, job.translated) {
+    for joint in job.translated_after() {
         let bone = bone(job.to, joint as usize);
         joints.extend([joint, bone.parent].into_iter().filter(|&joint| joint != NONE));
         if !bone.is_root && !is_whole(job.from, bone.joint) {
@@ -114,9 +115,9 @@ impl<T: Real> Solved<'_, '_, T> {
 
     fn turns(&self) -> Vec<Turn> {
         let known = known(self.job.from);
-        let turn = |(slot, span): (usize, &Option<Span>)| {
+        let turn = |(slot, span): (usize, Option<Span>)| {
             let Some(span) = span else { return Turn::Copy(slot) };
-            if let Some(&slot) = known.get(span) {
+            if let Some(&slot) = known.get(&span) {
                 return Turn::Copy(slot);
             }
             match (self.turn(span.above), self.turn(span.own)) {
@@ -126,12 +127,11 @@ impl<T: Real> Solved<'_, '_, T> {
                 (None, None) => unreachable!("a slot that leads from the world to the world is none"),
             }
         };
-        self.job.to.spans().iter().enumerate().map(turn).collect()
+        spans(self.job).map(turn).collect()
     }
 
     fn vectors(&self) -> Vec<Vector> {
-        let Configure { from, to, translated, .. } = *self.job;
-        translated_after(from, to, translated).into_iter().map(|joint| self.vector(joint)).collect()
+        self.job.translated_after().into_iter().map(|joint| self.vector(joint)).collect()
     }
 
     fn vector(&self, joint: i32) -> Vector {
@@ -147,6 +147,26 @@ impl<T: Real> Solved<'_, '_, T> {
         }
         let turn = self.turn(from.home().world_slots()[bone.joint]);
         Vector::Between { turn, from: self.bones[&bone.parent], to: self.bones[&joint] }
+    }
+}
+
+/// The slots of `to` that are wanted, and what they lead from and to.
+fn spans<T>(job: &Configure<'_, T>) -> impl Iterator<Item = (usize, Option<Span>)> {
+    let all = job.to.spans();
+    let count = job.slots.map_or(all.len(), <[i32]>::len);
+    let slots = job.slots;
+    (0..count).map(move |k| {
+        let slot = slots.map_or(k, |slots| slots[k] as usize);
+        (slot, all[slot])
+    })
+}
+
+fn check_slots<T>(job: &Configure<'_, T>) -> Result<(), JobError> {
+    let count = job.to.topology().slot_count();
+    let slots = job.slots.unwrap_or_default();
+    match slots.iter().position(|slot| !(0..count as i32).contains(slot)) {
+        Some(at) => Err(JobError::Index { what: "slots", at, found: slots[at].into(), count }),
+        None => Ok(()),
     }
 }
 
@@ -170,7 +190,7 @@ fn is_whole(forest: &Forest, joint: usize) -> bool {
         .is_ok_and(|above| parents[joint] == above as i32 || parents[above] == joint as i32)
 }
 
-/// See [`Configure::translated_after`].
+/// The joints that are translated per frame in `to`; see [`Configure::translated_after`].
 pub(super) fn translated_after(from: &Forest, to: &Forest, translated: &[i32]) -> Vec<i32> {
     let count = from.home().joint_count();
     let mut is_moving = vec![false; count];

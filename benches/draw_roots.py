@@ -1,0 +1,164 @@
+"""Repeats the experiment of the General Motion Representation: draws its curve, prints its tables.
+
+python benches/draw_roots.py docs/images/roots.svg            all of it, some minutes
+python benches/draw_roots.py /tmp/roots.svg --rounds 1 --every 5
+
+For k = 1 to 26 roots, ten random sets each: the time per frame to compute the positions of all joints of
+37 recordings, with BVH in turn beside it. Each set counts by the median over its rounds. The line is the
+median over the sets, the band goes from the quickest to the slowest; BVH's band from the quickest tenth of
+all its medians to the slowest. See gmr.bench.roots.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import statistics
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import vl_convert
+
+import gmr
+from gmr.bench.harness import one_core
+from gmr.bench.inputs import cmu_like_bvh
+from gmr.bench.roots import EULER_ROWS, QUATERNIONS, Recordings, random_roots, record
+
+GMR = "GMR, k roots"
+COLOURS = {EULER_ROWS: "#c0392b", QUATERNIONS: "#c8711a", GMR: "#2a6ea9"}
+
+Point = dict[str, Any]
+
+
+def measured(recordings: Recordings, rounds: int, every: int) -> Iterator[Point]:
+    """Nanoseconds a frame for each k: those of GMR with their spread over the sets, and BVH's beside them."""
+    bvh = {EULER_ROWS: recordings.from_euler_rows(), QUATERNIONS: recordings.from_quaternions()}
+    count = recordings.joint_count
+    for k in sorted({*range(1, count + 1, every), count}):
+        medians: dict[str, list[float]] = {name: [] for name in COLOURS}
+        for roots in random_roots(count, k):
+            calls = {**bvh, GMR: recordings.from_roots(roots)}
+            times: dict[str, list[float]] = {name: [] for name in calls}
+            for call in calls.values():
+                call()
+            for _ in range(rounds):
+                for name, call in calls.items():
+                    begun = time.perf_counter()
+                    call()
+                    times[name].append(time.perf_counter() - begun)
+            for name, found in times.items():
+                medians[name].append(1e9 * statistics.median(found) / recordings.frame_count)
+        for name, found in medians.items():
+            spread = {"cost": statistics.median(found), "low": min(found), "high": max(found)}
+            yield {"k": k, "what": name, "sets": found, **spread}
+
+
+def chart(points: Sequence[Point]) -> dict[str, Any]:
+    """Vega-Lite description of the curve, on white so that it can be read where a page is dark."""
+    colour = {
+        "field": "what",
+        "type": "nominal",
+        "title": None,
+        "scale": {"domain": list(COLOURS), "range": list(COLOURS.values())},
+        "legend": {"orient": "top", "labelLimit": 300, "symbolType": "stroke", "symbolStrokeWidth": 3},
+    }
+    last = max(point["k"] for point in points)
+    axis = {
+        "field": "k", "type": "quantitative", "title": f"roots, of {last} joints",
+        "scale": {"domain": [0, last], "nice": False},
+    }  # fmt: skip
+    cost = {"type": "quantitative", "title": "nanoseconds a frame", "scale": {"domainMin": 0}}
+    return {
+        "$schema": "https://vega.github.io/schema/vega-lite/v5.json",
+        "width": 560,
+        "height": 300,
+        "background": "white",
+        "padding": 14,
+        "config": {"font": "sans-serif", "axis": {"labelFontSize": 12, "titleFontSize": 13}},
+        "data": {"values": [point for point in points if point["what"] == GMR] + levels(points)},
+        "encoding": {"x": axis, "color": colour},
+        "layer": [
+            {
+                "mark": {"type": "area", "opacity": 0.22},
+                "encoding": {"y": {**cost, "field": "low"}, "y2": {"field": "high"}},
+            },
+            {"mark": {"type": "line", "strokeWidth": 2.2}, "encoding": {"y": {**cost, "field": "cost"}}},
+        ],
+    }
+
+
+def levels(points: Sequence[Point]) -> list[Point]:
+    """BVH's lines, which do not depend on k: medians, with bands from the lowest tenth to the highest."""
+    ends = [min(point["k"] for point in points), max(point["k"] for point in points)]
+    found = []
+    for name in (EULER_ROWS, QUATERNIONS):
+        costs = [cost for point in points if point["what"] == name for cost in point["sets"]]
+        low, *_, high = statistics.quantiles(costs, n=10)
+        level = {"what": name, "cost": statistics.median(costs), "low": low, "high": high}
+        found += [{"k": k, **level} for k in ends]
+    return found
+
+
+def table(points: Sequence[Point]) -> Iterator[str]:
+    """Lines of a Markdown table of some of the curve's points."""
+    by_k: dict[int, Mapping[str, Point]] = {}
+    for point in points:
+        by_k[point["k"]] = {**by_k.get(point["k"], {}), point["what"]: point}
+    last = max(by_k)
+    yield "| roots | ns a frame (quickest to slowest set) | against Euler rows | against quaternions |"
+    yield "|---|---|---|---|"
+    for k in sorted(by_k):
+        if k in (1, 7, 13, 19, 22, 24, 25, last):
+            found = by_k[k]
+            mine = found[GMR]
+            ratios = (f"{found[name]['cost'] / mine['cost']:.1f}x" for name in (EULER_ROWS, QUATERNIONS))
+            spread = f"{mine['cost']:.0f} ({mine['low']:.0f} to {mine['high']:.0f})"
+            yield f"| {k} | {spread} | {' | '.join(ratios)} |"
+
+
+def sizes(recordings: Recordings) -> Iterator[str]:
+    """Lines of a Markdown table of the bytes that a frame takes in memory."""
+    full, lean = recordings.bvh[0][:4], recordings.lean[0][:4]
+    rows = full.rows.shape[1]
+    text = len(cmu_like_bvh().partition(b"Frame Time:")[2]) / 36_088
+    yield "| what | numbers a frame | float64 | float32 |"
+    yield "|---|---|---|---|"
+    yield f"| BVH text | {rows} | {text:.0f} bytes of text | |"
+    yield f"| BVH rows, as read | {rows} | {8 * rows} | |"
+    yield _size("BVH as quaternions, with dummies", numbers(full))
+    for name, motion in (("with dummies", full), ("without", lean)):
+        count = motion.skeleton.joint_count
+        for k in (1, (count + 1) // 2, count):
+            found = [numbers(motion.with_roots(roots)) for roots in random_roots(count, k)]
+            yield _size(f"GMR C_{k}, {count} joints, {name}", statistics.mean(found))
+    yield _size("positions alone: all that C_26 reads for them", 3 * lean.skeleton.joint_count)
+
+
+def numbers(motion: gmr.Motion) -> int:
+    """Numbers that a frame of the motion's pose takes."""
+    return 4 * motion.skeleton.slot_count + 3 * len(motion.translated)
+
+
+def _size(what: str, count: float) -> str:
+    return f"| {what} | {count:.0f} | {8 * count:.0f} | {4 * count:.0f} |"
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    options.add_argument("picture", type=Path)
+    options.add_argument("--rounds", type=int, default=5)
+    options.add_argument("--every", type=int, default=1, help="measure every so many k only")
+    asked = options.parse_args()
+    recordings = record()
+    with one_core():
+        points = list(measured(recordings, asked.rounds, asked.every))
+    print(f"{recordings.frame_count:,} frames, {recordings.joint_count} joints, {recordings.source}\n")
+    print("\n".join(table(points)), end="\n\n")
+    print("\n".join(sizes(recordings)))
+    asked.picture.write_text(vl_convert.vegalite_to_svg(json.dumps(chart(points))), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
