@@ -189,8 +189,9 @@ pub fn quaternions_to_euler<T: Real>(
 }
 
 /// Below this sine of half the middle angle the outer angles cannot be told apart: taking them for one line turns
-/// the rotation by less than this, and above it rounding moves them by less than 1e-6 degrees.
-const LOCK: f64 = 1e-8;
+/// the rotation by less than this, which is next to rounding. Just above it rounding moves the outer angles against
+/// each other, by 0.1 degrees at most, and the rotation not at all.
+const LOCK: f64 = 1e-13;
 
 fn decompose(q: [f64; 4], axes: Axes, before: Option<[f64; 3]>) -> [f64; 3] {
     let [i, j, k] = axes.map(usize::from);
