@@ -36,7 +36,7 @@ PAIRS = [
 def test_an_exchange_is_found_and_undone(
     pair: tuple[str, str], first: int, length: int, relation: str | None, noise: float
 ) -> None:
-    # The toes of this take go 21, 54 and 33 mm in successive frames: paths alone do not tell them apart there.
+    # The toes of this take go 21, 54 and 33 mm in successive frames, where paths alone do not tell.
     assume(relation is not None or pair != ("L_FM1", "L_FM5"))
     truth = noisy(worn(), noise)
     last = min(first + length, truth.frame_count)
