@@ -1,8 +1,8 @@
 """C3D, the binary format of motion laboratories: points over frames, here read as markers.
 
-Intel, DEC and MIPS numbers, integer and float coordinates. Analog channels, rotations and what a model
-computed (angles, forces, moments, powers) are named, not read. Source: the C3D file format user guide,
-c3d.org.
+The bytes are read by ezc3d (https://github.com/pyomeca/ezc3d); here is told what they mean. Analog channels,
+rotations and what a model computed (angles, forces, moments, powers) are named, not read. Source: the C3D
+file format user guide, c3d.org.
 """
 
 from __future__ import annotations
@@ -10,13 +10,14 @@ from __future__ import annotations
 import math
 import warnings
 from collections import Counter
-from typing import Final
+from collections.abc import Mapping
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gmr.errors import FormatError, FormatWarning
-from gmr.formats.c3d_parameters import BLOCK, Header, Parameters, read_header, read_parameters
+from gmr.formats.c3d_bytes import BLOCK, Header, by_ezc3d, read_header
 from gmr.listing import quoted
 from gmr.markers.axes import AXES, floor_axis
 from gmr.markers.recording import Event, Markers, Up
@@ -28,10 +29,11 @@ _NO_MARKERS: Final = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS", "REACT
 """Lists of the group POINT that name points which are no places of markers."""
 
 _SATURATED: Final = 65535
-"""The greatest count of 16 bits, where longer recordings stop counting."""
-_MOST_FRAMES: Final = 1 << 31
-"""A count beyond is damage, not a recording."""
+"""The greatest count of 16 bits, where longer recordings stop counting and ezc3d stops reading."""
 _SHOWN: Final = 6
+
+Parameters = Mapping[str, Mapping[str, Any]]
+"""Group -> name -> value, all in upper case; values are arrays of numbers or lists of strings."""
 
 
 def read_c3d(data: bytes, *, name: str | None = None, strict: bool = False) -> Markers:
@@ -40,13 +42,18 @@ def read_c3d(data: bytes, *, name: str | None = None, strict: bool = False) -> M
     A point is not seen, and NaN, where its residual is negative, where a coordinate is not finite, and where
     all three are exactly 0, which some programs write instead.
 
+    Lengths are checked before ezc3d, which is C++, sees the file; the rest it believes. Bytes made to do harm
+    may still make it ask for gigabytes, work without end or crash: read such in a process of its own.
+
     Args:
         data: the file's bytes.
         name: the file's name, for errors and for the recording.
         strict: raise where a warning would do.
 
     Raises:
-        FormatError: this is no C3D file, it is damaged or cut off; says where and how to mend it.
+        MissingExtraError: ezc3d is not installed (the extra ``markers``).
+        FormatError: this is no C3D file, it is damaged or cut off before its first frame ends, a MIPS
+            computer wrote it, or ezc3d refuses it; says where and how to mend it.
 
     Warns:
         FormatWarning: frames that are cut off, points without a label or with the label of another, frame
@@ -54,19 +61,17 @@ def read_c3d(data: bytes, *, name: str | None = None, strict: bool = False) -> M
     """
     odd = _Oddities(name, strict)
     header = read_header(data, name)
-    parameters = read_parameters(data, header, name)
-    scale = _number(parameters, "SCALE", header.scale)
-    rate = _number(parameters, "RATE", header.rate)
-    if not (math.isfinite(scale) and scale):
-        raise FormatError(
-            f"the scale of the points is {scale}; it must not be 0. Export it again.", file=name
-        )
-    if not (math.isfinite(rate) and rate > 0):
+    first = by_ezc3d(data, name)
+    parameters = _parameters(first)
+    if header.points and _number(parameters, "SCALE", 0) == 0:
+        raise FormatError("the scale of the points is 0; it must not be. Export it again.", file=name)
+    rate = _number(parameters, "RATE", 0)
+    if not rate > 0:
         odd.say(f"the rate is {rate} frames a second, so that the frames have no duration")
         rate = math.inf
-    points, residuals = _points(data, header, parameters, scale, odd)
+    points, residuals = _points(data, header, first, parameters, odd)
     kept, labels, ignored = _labels(parameters, points.shape[1], odd)
-    positions = np.asarray(points[:, kept], np.float64)
+    positions = points[:, kept]
     if header.analog:
         ignored = (*ignored, _analog(parameters))
     if not kept:
@@ -99,84 +104,72 @@ class _Oddities:
 
 
 def _points(
-    data: bytes, header: Header, parameters: Parameters, scale: float, odd: _Oddities
+    data: bytes, header: Header, first: Mapping[str, Any], parameters: Parameters, odd: _Oddities
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(F, P, 3) places and (F, P) residuals of all points, NaN where not seen."""
-    points = int(_number(parameters, "USED", header.points)) % 65536
-    if points != header.points:
-        odd.say(f"the header counts {header.points:,} points, the parameters {points:,}; the header is taken")
-        points = header.points
-    size = 4 if scale < 0 else 2
-    row = (4 * points + header.analog) * size
-    start = int(_number(parameters, "DATA_START", 0) - 1) * BLOCK
-    start = start if start > 0 else header.data_at
-    if start < BLOCK and row:
-        raise FormatError("the file does not say where its frames begin. Export it again.", file=odd.file)
-    frames = _frame_count(parameters, header, row, len(data) - start, odd)
-    if frames == _SATURATED and row:
-        frames = _uncounted(data, start, row, odd)
-    if not points or not frames:
-        return np.empty((frames, points, 3)), np.empty((frames, points))
-    raw = np.frombuffer(data, np.uint8, frames * row, start).reshape(frames, row)
-    held = np.ascontiguousarray(raw[:, : 4 * points * size]).tobytes()
-    if size == 4:
-        with np.errstate(invalid="ignore"):
-            values = header.processor.floats(held).reshape(frames, points, 4)
-            last = np.nan_to_num(values[..., 3], nan=-1, posinf=-1, neginf=-1).clip(-32768, 32767)
-            word = last.astype(np.int16)
-        places = values[..., :3].copy()
-    else:
-        counts = header.processor.integers(held).reshape(frames, points, 4)
-        word = counts[..., 3]
-        places = counts[..., :3].astype(np.float64) * scale
-    unseen = (word < 0) | ~np.isfinite(places).all(axis=2) | ~places.any(axis=2)
+    places, residuals = _of_ezc3d(first)
+    if places.shape[1] != header.points:
+        what = f"the header counts {header.points:,} points, the parameters {places.shape[1]:,}"
+        raise FormatError(f"{what}. The file is damaged; export it again.", file=odd.file)
+    pieces = [(places, residuals)]
+    got = len(places)
+    count = _frame_count(data, header, parameters, got, odd)
+    while got < count:
+        # ezc3d counts in 16 bits: the same file again, without the frames that are already there.
+        rest = data[: header.start] + data[header.start + got * header.row :]
+        places, residuals = _of_ezc3d(by_ezc3d(rest, odd.file))
+        pieces.append((places[: count - got], residuals[: count - got]))
+        got += len(pieces[-1][0])
+    places, residuals = (np.concatenate(parts)[:count] for parts in zip(*pieces, strict=True))
+    unseen = ~(residuals >= 0) | ~np.isfinite(places).all(axis=2) | ~places.any(axis=2)
     places[unseen] = np.nan
-    return places, np.where(unseen, np.nan, (word & 0xFF) * abs(scale))
+    residuals[unseen] = np.nan
+    return places, residuals
 
 
-def _frame_count(parameters: Parameters, header: Header, row: int, room: int, odd: _Oddities) -> int:
-    """How many frames there are: as the parameters say, else as the header does; those that are there.
+def _of_ezc3d(found: Mapping[str, Any]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(F, P, 3) places and (F, P) residuals as ezc3d has them."""
+    places = np.asarray(found["data"]["points"], np.float64)[:3].transpose(2, 1, 0)
+    residuals = np.asarray(found["data"]["meta_points"]["residuals"], np.float64)[0].T
+    return np.array(places), np.array(residuals)
+
+
+def _frame_count(data: bytes, header: Header, parameters: Parameters, read: int, odd: _Oddities) -> int:
+    """How many frames there are, where ezc3d has read so many of them.
 
     The header counts in 16 bits, so that long recordings have parameters for it, each in its own way.
     """
-    trial = parameters.get("TRIAL", {})
-    start, end = (
-        _long(trial[key].numbers) if key in trial else 0 for key in ("ACTUAL_START_FIELD", "ACTUAL_END_FIELD")
-    )
+    whole = (len(data) - header.start) // header.row if header.row else read
+    start, end = (_long(_numbers(parameters, "TRIAL", f"ACTUAL_{which}_FIELD")) for which in ("START", "END"))
     claims = {
         "POINT:LONG_FRAMES": int(_number(parameters, "LONG_FRAMES", 0)),
         "TRIAL:ACTUAL_END_FIELD": end - start + 1 if end else 0,
-        "POINT:FRAMES": int(_number(parameters, "FRAMES", 0)) % 65536,
-        "the header": header.last - header.first + 1 if header.last >= header.first else 0,
+        "the header": header.frames,
     }
-    claims = {where: count for where, count in claims.items() if 0 < count < _MOST_FRAMES}
-    fitting = {where: count for where, count in claims.items() if count * row <= room}
-    if not fitting:
-        if not claims:
-            return 0
-        where, count = next(iter(claims.items()))
-        whole = max(0, room) // row if row else 0
-        what = (
-            f"the file is cut off: {where} counts {count:,} frames of {row:,} bytes, but {whole:,} are there"
-        )
-        if not whole:
-            raise FormatError(f"{what}. Copy it again.", file=odd.file)
-        odd.say(f"{what}, which are read. Copy it again for the rest")
-        return whole
-    where, count = next(iter(fitting.items()))
-    for other, claimed in claims.items():
-        if claimed != count and not (other in ("the header", "POINT:FRAMES") and count > 65534):
-            odd.say(f"{where} counts {count:,} frames, {other} {claimed:,}; {count:,} are read")
+    claims = {where: count for where, count in claims.items() if count > 0}
+    if read == _SATURATED and header.row:
+        fitting = (claims[key] for key in list(claims)[:-1] if read <= claims[key] <= whole)
+        return next(fitting, None) or _uncounted(data, header, odd)
+    if 0 < header.frames < read == whole:
+        what = f"the header counts {header.frames:,} frames, POINT:FRAMES {read:,} or more"
+        odd.say(f"{what}; {header.frames:,} are read")
+        return header.frames
+    for where, count in claims.items():
+        if count > whole:
+            what = f"the file is cut off: {where} counts {count:,} frames of {header.row:,} bytes"
+            odd.say(f"{what}, but {read:,} are there, which are read. Copy it again for the rest")
             break
-    return count
+        if count != read:
+            odd.say(f"{where} counts {count:,} frames, ezc3d reads {read:,}, which are taken")
+            break
+    return read
 
 
-def _uncounted(data: bytes, start: int, row: int, odd: _Oddities) -> int:
+def _uncounted(data: bytes, header: Header, odd: _Oddities) -> int:
     """How many frames there are where the count stands at its greatest: as many as the file has room for,
     without the zeros that fill its last block."""
-    room = len(data) - start
-    empty = len(data) - max(start, len(data.rstrip(b"\0")))
-    whole = room // row - min(empty, BLOCK - 1) // row
+    empty = len(data) - max(header.start, len(data.rstrip(b"\0")))
+    whole = (len(data) - header.start) // header.row - min(empty, BLOCK - 1) // header.row
     if whole > _SATURATED:
         odd.say(f"the file counts {_SATURATED:,} frames, the most it can; {whole:,} are there, and read")
     return max(_SATURATED, whole)
@@ -200,7 +193,13 @@ def _labels(
             f"{blank} of {count} points have no label; they are called by their place, 'unnamed 1' and so on"
         )
         labels = [label or f"unnamed {place}" for place, label in enumerate(labels, 1)]
-    computed = {label: key for key in _NO_MARKERS if key in point for label in point[key].texts if label}
+    computed = {
+        label: key
+        for key in _NO_MARKERS
+        if key in point
+        for label in _listed(parameters, "POINT", key)
+        if label
+    }
     kept = [place for place, label in enumerate(labels) if label not in computed]
     chosen = tuple(labels[place] for place in kept)
     if twice := [label for label, times in Counter(chosen).items() if times > 1]:
@@ -260,23 +259,45 @@ def _up(parameters: Parameters, positions: NDArray[np.float64], odd: _Oddities) 
     return None if told is None else Up(told, "all markers are above 0 along it alone")
 
 
-def _listed(parameters: Parameters, group: str, key: str) -> tuple[str, ...]:
+def _parameters(found: Mapping[str, Any]) -> Parameters:
+    """The parameters as ezc3d has them, without what it says of groups."""
+    return {
+        group.upper(): {key.upper(): held["value"] for key, held in keys.items() if "value" in held}
+        for group, keys in found["parameters"].items()
+    }
+
+
+def _listed(parameters: Parameters, group: str, key: str) -> list[str]:
     """The strings of a parameter and of those that continue it: LABELS, LABELS2, LABELS3, ..."""
     held = parameters.get(group, {})
-    found = list(held[key].texts) if key in held else []
-    number = 2
+    found, number = _texts(held.get(key)), 2
     while f"{key}{number}" in held:
-        found += held[f"{key}{number}"].texts
+        found += _texts(held[f"{key}{number}"])
         number += 1
-    return tuple(found)
+    return found
+
+
+def _texts(value: object) -> list[str]:
+    """The strings of a value; none where it holds numbers. Bytes that are no UTF-8 are Latin-1."""
+    return [_text(text) for text in value] if isinstance(value, list) else []
+
+
+def _text(text: str) -> str:
+    raw = text.encode("utf-8", "surrogateescape").split(b"\0")[0]
+    try:
+        return raw.decode().strip()
+    except UnicodeDecodeError:
+        return raw.decode("latin-1").strip()
 
 
 def _numbers(parameters: Parameters, group: str, key: str) -> list[float]:
-    held = parameters.get(group, {})
-    return held[key].numbers if key in held else []
+    """The finite numbers of a value, the first dimension fastest; none where it holds text or one is not."""
+    value = parameters.get(group, {}).get(key)
+    if not isinstance(value, np.ndarray) or not np.isfinite(value).all():
+        return []
+    return [float(number) for number in value.ravel(order="F")]
 
 
 def _number(parameters: Parameters, key: str, default: float) -> float:
-    """The first number of a parameter of the group POINT; the default where there is none, or no number."""
-    found = next(iter(_numbers(parameters, "POINT", key)), default)
-    return found if math.isfinite(found) else default
+    """The first number of a parameter of the group POINT; the default where there is none."""
+    return next(iter(_numbers(parameters, "POINT", key)), default)
