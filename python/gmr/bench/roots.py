@@ -2,8 +2,8 @@
 
 37 recordings of 2,768 frames, 14.2 minutes at 120 frames a second; per k ten random sets of k roots; the time
 to compute the positions of all joints in all frames, one recording after the other into the same array, which
-is as long as one recording. BVH computes the same joints by gmr's own kinematics: once from Euler rows as read,
-once from ready quaternions.
+is as long as one recording. BVH computes the same joints by gmr's own kinematics: once from Euler rows as
+read, once from ready quaternions.
 Source: "General Motion Representation", experimental results and Figure 4.
 """
 
