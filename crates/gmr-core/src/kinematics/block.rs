@@ -50,6 +50,7 @@ fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Rea
         let frames = range.start + block.start..range.start + block.end;
         source.load(frames.clone());
         solve(plan, &source, &mut rotations, &mut positions);
+        source.prefetch_translations();
         let (rows, stride) = positions_out.block(&block, L::WIDTH);
         store(&position_groups, positions.as_flattened(), rows, stride);
         parts.copy(job, frames, rows, stride);

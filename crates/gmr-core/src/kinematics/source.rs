@@ -9,15 +9,14 @@ use crate::lanes::rows::{SourceRows, groups};
 use crate::lanes::{Lanes, Real, cache};
 use crate::rotation::{EulerBlock, normalize};
 
-/// Numbers in a row of translations that need not be asked for: they lie close enough for the memory to see what comes.
-const FEW_TRANSLATIONS: usize = 24;
-
 /// Where a block's local rotations and its bones' vectors come from.
 pub(crate) trait Source<L: Lanes> {
     /// Takes in a block.
     fn load(&mut self, frames: Range<usize>);
     /// Asks the memory for the share of the next block that belongs to a turn.
     fn prefetch(&self, turn: usize);
+    /// Asks the memory for what else the next block needs, once in each block.
+    fn prefetch_translations(&self);
     /// A slot's local rotation.
     fn rotation(&self, slot: usize) -> [L; 4];
     /// The vector of the bone whose joint is the `place`th translated one.
@@ -43,10 +42,9 @@ pub(crate) struct Quaternions<'a, L: Lanes> {
     columns: Vec<L>,
     /// Where the next block begins, in rotations and in translations.
     next: [usize; 2],
-    /// How many of its numbers, or of the lines, each turn asks the memory for; none of so few that they come by
-    /// themselves.
-    shares: [usize; 2],
-    /// Where the rotations that are needed lie in a block, where these are few; else empty.
+    /// How many numbers of its rotations each turn asks the memory for; none where few rotations are needed.
+    share: usize,
+    /// What is asked for at once then: a number in each cache line that is needed of a block.
     lines: Vec<usize>,
 }
 
@@ -70,13 +68,6 @@ impl<'a, L: Lanes> Quaternions<'a, L> {
         let slots: BTreeSet<usize> = slots.collect();
         let is_sparse = 2 * slots.len() < slot_count;
         let lines = if is_sparse { lines(rotations, slot_count, &slots, L::WIDTH) } else { vec![] };
-        let rotation_share = if is_sparse {
-            lines.len().div_ceil(plan.turns.len())
-        } else {
-            share::<L::Real, _>(4 * slot_count * L::WIDTH, plan)
-        };
-        let is_streamed = width < FEW_TRANSLATIONS;
-        let translation_share = if is_streamed { 0 } else { share::<L::Real, _>(width * L::WIDTH, plan) };
         Self {
             rotations: SourceRows::new(rotations, 4 * slot_count),
             normalize,
@@ -84,7 +75,7 @@ impl<'a, L: Lanes> Quaternions<'a, L> {
             groups: groups(&is_wanted),
             columns: vec![L::splat(L::Real::ZERO); width.max(4)],
             next: [0; 2],
-            shares: [rotation_share, translation_share],
+            share: if is_sparse { 0 } else { share::<L::Real, _>(4 * slot_count * L::WIDTH, plan) },
             lines,
         }
     }
@@ -95,6 +86,7 @@ impl<L: Lanes> Source<L> for Quaternions<'_, L> {
     fn load(&mut self, frames: Range<usize>) {
         let next = frames.start + L::WIDTH;
         self.next = [next * self.rotations.width(), next * self.translations.width()];
+        self.lines.iter().for_each(|line| cache::prefetch(self.rotations.data(), self.next[0] + line, 1));
         self.rotations.block(&frames, L::WIDTH);
         let (block, stride) = self.translations.block(&frames, L::WIDTH);
         for &group in &self.groups {
@@ -105,16 +97,13 @@ impl<L: Lanes> Source<L> for Quaternions<'_, L> {
 
     #[inline(always)]
     fn prefetch(&self, turn: usize) {
-        let ([rotations, translations], [share, few]) = (self.next, self.shares);
-        if self.lines.is_empty() {
-            cache::prefetch(self.rotations.data(), rotations + turn * share, share);
-        } else {
-            let lines = self.lines.iter().skip(turn * share).take(share);
-            lines.for_each(|line| cache::prefetch(self.rotations.data(), rotations + line, 1));
-        }
-        if few > 0 {
-            cache::prefetch(self.translations.data(), translations + turn * few, few);
-        }
+        cache::prefetch(self.rotations.data(), self.next[0] + turn * self.share, self.share);
+    }
+
+    #[inline(always)]
+    fn prefetch_translations(&self) {
+        let count = L::WIDTH * self.translations.width();
+        cache::prefetch(self.translations.data(), self.next[1], count);
     }
 
     #[inline(always)]
@@ -192,6 +181,9 @@ impl<L: Lanes> Source<L> for Rows<'_, L> {
     fn prefetch(&self, turn: usize) {
         cache::prefetch(self.rows.data(), self.next + turn * self.share, self.share);
     }
+
+    #[inline(always)]
+    fn prefetch_translations(&self) {}
 
     #[inline(always)]
     fn rotation(&self, slot: usize) -> [L; 4] {

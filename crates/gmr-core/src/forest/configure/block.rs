@@ -53,6 +53,7 @@ fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Rea
     for block in blocks::<L>(range.len()) {
         source.load(range.start + block.start..range.start + block.end);
         solve(&plan.solving, &source, &mut rotations, &mut positions);
+        source.prefetch_translations();
         for (q, turn) in turned.iter_mut().zip(&plan.turns) {
             *q = match *turn {
                 Turn::Copy(slot) => source.rotation(slot),
