@@ -7,6 +7,7 @@ how far it may be off (one standard deviation). Lengths are metres.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Final
@@ -43,7 +44,7 @@ class Body:
 
 
 @dataclass(frozen=True)
-class Rule:
+class Rule(ABC):
     """A rule for a joint centre.
 
     Args:
@@ -63,9 +64,9 @@ class Rule:
             elif isinstance(value, str) and key in ("of", "plane", "joint", "back", "front"):
                 yield value
 
+    @abstractmethod
     def place(self, body: Body) -> Array:
         """(3,) the joint centre in the template of the part above."""
-        raise NotImplementedError
 
     def guess(self, body: Body) -> Guess:
         """The joint centre with its uncertainty."""
