@@ -73,7 +73,7 @@ def skeletons(draw: st.DrawFn) -> Skeleton:
     return Skeleton(
         tuple(draw(st.lists(names, min_size=count, max_size=count))),
         np.array(parents, np.int32),
-        draw(arrays(np.float64, shape, elements=any_float | st.just(-0.0))),
+        draw(arrays(np.float64, shape, elements=st.floats(-1e100, 1e100, width=64) | st.just(-0.0))),
         np.array(slots, np.int32),
         used + draw(st.integers(0, 1)),
         draw(arrays(np.uint8, count, elements=st.sampled_from([int(end) for end in End]))),
