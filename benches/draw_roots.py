@@ -24,7 +24,7 @@ import vl_convert
 import gmr
 from gmr.bench.harness import one_core
 from gmr.bench.inputs import cmu_like_bvh
-from gmr.bench.roots import EULER_ROWS, QUATERNIONS, Recordings, random_roots, record
+from gmr.bench.roots import EULER_ROWS, QUATERNIONS, SETS, Recordings, Work, random_roots, record
 
 GMR = "GMR, k roots"
 COLOURS = {EULER_ROWS: "#c0392b", QUATERNIONS: "#c8711a", GMR: "#2a6ea9"}
@@ -32,27 +32,39 @@ COLOURS = {EULER_ROWS: "#c0392b", QUATERNIONS: "#c8711a", GMR: "#2a6ea9"}
 Point = dict[str, Any]
 
 
-def measured(recordings: Recordings, rounds: int, every: int) -> Iterator[Point]:
-    """Nanoseconds a frame for each k: those of GMR with their spread over the sets, and BVH's beside them."""
+def measured(recordings: Recordings, rounds: int, every: int) -> list[Point]:
+    """Nanoseconds a frame for each k: those of GMR with their spread over the sets, and BVH's beside them.
+
+    One set of each k after the other, so that a slow minute of the machine is no single k's.
+    """
     bvh = {EULER_ROWS: recordings.from_euler_rows(), QUATERNIONS: recordings.from_quaternions()}
     count = recordings.joint_count
-    for k in sorted({*range(1, count + 1, every), count}):
-        medians: dict[str, list[float]] = {name: [] for name in COLOURS}
-        for roots in random_roots(count, k):
-            calls = {**bvh, GMR: recordings.from_roots(roots)}
-            times: dict[str, list[float]] = {name: [] for name in calls}
-            for call in calls.values():
-                call()
-            for _ in range(rounds):
-                for name, call in calls.items():
-                    begun = time.perf_counter()
-                    call()
-                    times[name].append(time.perf_counter() - begun)
-            for name, found in times.items():
-                medians[name].append(1e9 * statistics.median(found) / recordings.frame_count)
-        for name, found in medians.items():
-            spread = {"cost": statistics.median(found), "low": min(found), "high": max(found)}
-            yield {"k": k, "what": name, "sets": found, **spread}
+    sets = {k: random_roots(count, k) for k in sorted({*range(1, count + 1, every), count})}
+    costs: dict[int, dict[str, list[float]]] = {k: {name: [] for name in COLOURS} for k in sets}
+    for number in range(SETS):
+        for k in sets:
+            calls = {**bvh, GMR: recordings.from_roots(sets[k][number])}
+            for name, seconds in _timed(calls, rounds).items():
+                costs[k][name].append(1e9 * seconds / recordings.frame_count)
+    return [
+        {"k": k, "what": name, "sets": found, "cost": statistics.median(found)}
+        | {"low": min(found), "high": max(found)}
+        for k in sets
+        for name, found in costs[k].items()
+    ]
+
+
+def _timed(calls: Mapping[str, Work], rounds: int) -> dict[str, float]:
+    """The median of each call's times, taken turn by turn."""
+    times: dict[str, list[float]] = {name: [] for name in calls}
+    for call in calls.values():
+        call()
+    for _ in range(rounds):
+        for name, call in calls.items():
+            begun = time.perf_counter()
+            call()
+            times[name].append(time.perf_counter() - begun)
+    return {name: statistics.median(found) for name, found in times.items()}
 
 
 def chart(points: Sequence[Point]) -> dict[str, Any]:
@@ -107,15 +119,21 @@ def table(points: Sequence[Point]) -> Iterator[str]:
     for point in points:
         by_k[point["k"]] = {**by_k.get(point["k"], {}), point["what"]: point}
     last = max(by_k)
-    yield "| roots | ns a frame (quickest to slowest set) | against Euler rows | against quaternions |"
+    yield "| roots | ns a frame (quickest to slowest set) | BVH from Euler rows | BVH from quaternions |"
     yield "|---|---|---|---|"
     for k in sorted(by_k):
         if k in (1, 7, 13, 19, 22, 24, 25, last):
             found = by_k[k]
             mine = found[GMR]
-            ratios = (f"{found[name]['cost'] / mine['cost']:.1f}x" for name in (EULER_ROWS, QUATERNIONS))
+            ratios = (_ratio(found[name], mine) for name in (EULER_ROWS, QUATERNIONS))
             spread = f"{mine['cost']:.0f} ({mine['low']:.0f} to {mine['high']:.0f})"
             yield f"| {k} | {spread} | {' | '.join(ratios)} |"
+
+
+def _ratio(bvh: Point, mine: Point) -> str:
+    """The median of the ratios, each of times that were taken in turn."""
+    ratios = [theirs / ours for theirs, ours in zip(bvh["sets"], mine["sets"], strict=True)]
+    return f"{statistics.median(ratios):.1f}x ({min(ratios):.1f} to {max(ratios):.1f})"
 
 
 def sizes(recordings: Recordings) -> Iterator[str]:
@@ -153,7 +171,7 @@ def main() -> None:
     asked = options.parse_args()
     recordings = record()
     with one_core():
-        points = list(measured(recordings, asked.rounds, asked.every))
+        points = measured(recordings, asked.rounds, asked.every)
     print(f"{recordings.frame_count:,} frames, {recordings.joint_count} joints, {recordings.source}\n")
     print("\n".join(table(points)), end="\n\n")
     print("\n".join(sizes(recordings)))

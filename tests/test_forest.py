@@ -22,6 +22,7 @@ from gmr.frames import Pose, Rows
 from gmr.motion import Motion
 from gmr.partial import below
 from gmr.tpose import leading_rest_frames
+from gmr.world import quaternion_job
 from walks import walks_of
 
 CLOSE = 1e-12
@@ -132,6 +133,22 @@ def test_with_all_joints_as_roots_positions_are_what_is_stored(motion: Motion) -
     np.testing.assert_array_equal(apart.translated, np.arange(motion.skeleton.joint_count))
     np.testing.assert_array_equal(apart.positions(dtype=float), apart.translations)
     assert_same_motion(motion, apart)
+
+
+@given(walks())
+def test_positions_do_not_depend_on_rotations_that_move_nothing(walk: tuple[Motion, Motion]) -> None:
+    _, moved = walk
+    moved = replace(moved, source=moved.pose)
+    job = quaternion_job(moved, np.dtype(np.float32), only_positions=False)
+    all_read = np.empty((moved.frame_count, moved.skeleton.joint_count, 3), np.float32)
+    gmr._core.forward_kinematics(*job, None, None, all_read, None, 1)
+    np.testing.assert_array_equal(moved.positions(), all_read)
+    slots, _ = moved.skeleton.turning
+    idle = np.setdiff1d(np.arange(moved.skeleton.slot_count), slots)
+    spoiled = moved.rotations.copy()
+    spoiled[:, idle] = np.nan
+    other = replace(moved, source=replace(moved.pose, rotations=spoiled, rows=None))
+    np.testing.assert_array_equal(other.positions(), all_read)
 
 
 @given(walks())

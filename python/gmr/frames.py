@@ -93,7 +93,18 @@ class Pose:
     @cached_property
     def single(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Rotations and translations in float32, for kernels that are asked for it again and again."""
-        return self.rotations.astype(np.float32), self.translations.astype(np.float32)
+        return self.rotations.astype(np.float32), self._single_translations
+
+    def single_of(self, slots: NDArray[np.int32]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """As :attr:`single`, with the rotations of these slots alone; kept while the same are asked for."""
+        held = self.__dict__.get("_part")
+        if held is None or not np.array_equal(held[0], slots):
+            held = self.__dict__["_part"] = slots, self.rotations.take(slots, axis=1).astype(np.float32)
+        return held[1], self._single_translations
+
+    @cached_property
+    def _single_translations(self) -> NDArray[np.float32]:
+        return self.translations.astype(np.float32)
 
     @property
     def numbers(self) -> tuple[NDArray[np.float64], ...]:

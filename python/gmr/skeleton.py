@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gmr import _core
-from gmr.arrays import frozen
+from gmr.arrays import frozen, read_only
 from gmr.errors import SkeletonError
 from gmr.listing import listed, quoted
 
@@ -134,6 +134,19 @@ class Skeleton:
             return _core.Topology(self.parents, self.slots, self.slot_count)
         except ValueError as error:
             raise SkeletonError(f"{error} (joints: {quoted(self.names, _SHOWN)})") from error
+
+    @cached_property
+    def turning(self) -> tuple[NDArray[np.int32], _core.Topology]:
+        """The slots that move some joint, and the topology with just these: enough for positions.
+
+        The slot of a root on which nothing hangs moves nothing, and one that turns no bone neither.
+        """
+        world = np.asarray(self.topology.world_slots)
+        moves = np.array([parent >= 0 or bool(self.children[j]) for j, parent in enumerate(self.parents)])
+        slots = np.unique(world[moves & (world >= 0)]) if self.joint_count else world
+        renumbered = np.full(self.slot_count + 1, -1, np.int32)
+        renumbered[slots] = np.arange(len(slots))
+        return read_only(slots), _core.Topology(self.parents, renumbered[self.slots], len(slots))
 
     @cached_property
     def forest(self) -> _core.Forest:

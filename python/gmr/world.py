@@ -16,10 +16,13 @@ from gmr.threads import thread_count
 if TYPE_CHECKING:
     from gmr.motion import Motion
 
-__all__ = ["motion_positions", "motion_rotations"]
+__all__ = ["motion_positions", "motion_rotations", "quaternion_job"]
 
 FloatArray = NDArray[Any]
 """float32 or float64, as asked."""
+
+_FEW = 0.75
+"""Share of the slots up to which rotations that move something are kept apart from the others."""
 
 _THREADING_PAYS = 1_000_000
 """Joint positions above which sharing the work among threads wins over starting them."""
@@ -73,12 +76,28 @@ def _forward_kinematics(
         )  # fmt: skip
         return
     dtype = (positions if positions is not None else rotations).dtype  # type: ignore[union-attr]
-    pose = motion.pose
-    turns, moves = pose.single if dtype == np.float32 else (pose.rotations, pose.translations)
-    _core.forward_kinematics(
-        skeleton.topology, turns, pose.translated, moves, skeleton.offsets.astype(dtype, copy=False),
-        *wanted,
-    )  # fmt: skip
+    _core.forward_kinematics(*quaternion_job(motion, dtype, only_positions=rotations is None), *wanted)
+
+
+def quaternion_job(
+    motion: Motion, dtype: np.dtype[Any], *, only_positions: bool
+) -> tuple[_core.Topology, FloatArray, NDArray[np.int32], FloatArray, FloatArray]:
+    """What the kernel takes of a motion: topology, rotations, translated joints, translations, offsets.
+
+    For positions in float32 rotations that move nothing are left out where they are many: they would only be
+    read past.
+    """
+    skeleton, pose = motion.skeleton, motion.pose
+    topology = skeleton.topology
+    turns: FloatArray = pose.rotations
+    moves: FloatArray = pose.translations
+    if dtype == np.float32:
+        slots, turning = skeleton.turning
+        if only_positions and len(slots) <= _FEW * skeleton.slot_count:
+            topology, (turns, moves) = turning, pose.single_of(slots)
+        else:
+            turns, moves = pose.single
+    return topology, turns, pose.translated, moves, skeleton.offsets.astype(dtype, copy=False)
 
 
 def _float_type(dtype: DTypeLike | None) -> np.dtype[Any]:

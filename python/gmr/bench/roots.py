@@ -22,8 +22,9 @@ import gmr
 from gmr.bench.harness import Contest
 from gmr.bench.inputs import LARGE_FRAME_COUNT, data_folder
 from gmr.demo import demo_folder
+from gmr.world import quaternion_job
 
-__all__ = ["EULER_ROWS", "QUATERNIONS", "Recordings", "random_roots", "record", "roots"]
+__all__ = ["EULER_ROWS", "QUATERNIONS", "SETS", "Recordings", "Work", "random_roots", "record", "roots"]
 
 EULER_ROWS: Final = "gmr's BVH, Euler rows"
 QUATERNIONS: Final = "gmr's BVH, quaternions"
@@ -122,12 +123,7 @@ class Recordings:
     def _solving(self, motions: Iterator[gmr.Motion] | Sequence[gmr.Motion], joints: Array) -> Work:
         """Forward kinematics of poses in float32; only these are kept, so that many sets fit into memory."""
         out = self._room()
-        jobs = []
-        for motion in motions:
-            skeleton, pose = motion.skeleton, motion.pose
-            rotations, translations = (a.astype(np.float32) for a in (pose.rotations, pose.translations))
-            offsets = skeleton.offsets.astype(np.float32)
-            jobs.append((skeleton.topology, rotations, pose.translated, translations, offsets))
+        jobs = [quaternion_job(motion, out.dtype, only_positions=True) for motion in motions]
         return lambda: _last(_positions(*job, joints, out) for job in jobs)
 
     def _room(self) -> NDArray[np.float32]:
