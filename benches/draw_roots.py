@@ -74,7 +74,14 @@ def chart(points: Sequence[Point]) -> dict[str, Any]:
         "type": "nominal",
         "title": None,
         "scale": {"domain": list(COLOURS), "range": list(COLOURS.values())},
-        "legend": {"orient": "top", "labelLimit": 300, "symbolType": "stroke", "symbolStrokeWidth": 3},
+        "legend": {
+            "orient": "top",
+            "labelLimit": 300,
+            "symbolType": "stroke",
+            "symbolStrokeWidth": 3,
+            "symbolOpacity": 1,
+            "columnPadding": 24,
+        },
     }
     last = max(point["k"] for point in points)
     axis = {
