@@ -103,6 +103,34 @@ def test_choices_are_followed_in_the_order_that_help_tells(
     assert json.loads(capsys.readouterr().out)["roots"] == ["Neck", "RightHand"]
 
 
+def test_without_a_place_the_motion_goes_beside_its_file_as_gmr(
+    walk_path: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    file = tmp_path / "walk.bvh"
+    file.write_bytes(walk_path.read_bytes())
+    assert run("roots", file, "--set", "LeftHand,Neck") == 0
+    assert "walk.gmr" in capsys.readouterr().err
+    found, motion = gmr.read(tmp_path / "walk.gmr"), gmr.read(file)
+    assert found.roots == ("Neck", "LeftHand")
+    assert_same_places(motion, found)
+    assert run("roots", tmp_path / "walk.gmr", "--join", "LeftHand") == 2
+    assert "say where to write with --out" in capsys.readouterr().err
+
+
+def test_roots_are_moved_and_moved_back_in_a_pipeline(walk_path: Path) -> None:
+    def piped(data: bytes, *args: str) -> bytes:
+        command = [sys.executable, "-m", "gmr", "roots", "-", *args]
+        done = subprocess.run(command, input=data, capture_output=True, timeout=60, check=False)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    apart = piped(walk_path.read_bytes(), "--split", "LeftHand")
+    assert gmr.read(apart).roots == ("Hips", "LeftHand")
+    together = gmr.read(piped(apart, "--join", "LeftHand", "--out", "-"))
+    assert together.roots == ("Hips",)
+    assert_same_places(gmr.read(walk_path), together)
+
+
 def test_what_is_read_from_standard_input_can_be_shown(walk_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "gmr", "roots", "-", "--json"],
