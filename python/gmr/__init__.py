@@ -6,7 +6,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from gmr import editing, evaluation, markers, matching
+    from gmr import editing, evaluation, markers, matching, skinning
     from gmr._core import __version__
     from gmr.bone_tails import Bones, bones
     from gmr.channels import ChannelLayout
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
         GmrError,
         MissingExtraError,
         SkeletonError,
+        SkinError,
     )
     from gmr.evaluation.evaluate import evaluate
     from gmr.evaluation.result import Evaluation
@@ -40,6 +41,7 @@ __all__ = [
     "Motion",
     "Skeleton",
     "SkeletonError",
+    "SkinError",
     "__version__",
     "bones",
     "concatenate",
@@ -52,6 +54,7 @@ __all__ = [
     "read",
     "read_folder",
     "read_markers",
+    "skinning",
     "write",
 ]
 
@@ -70,6 +73,7 @@ _HOMES = {
     "Motion": "gmr.motion",
     "Skeleton": "gmr.skeleton",
     "SkeletonError": "gmr.errors",
+    "SkinError": "gmr.errors",
     "__version__": "gmr._core",
     "bones": "gmr.bone_tails",
     "concatenate": "gmr.concatenation",
@@ -80,7 +84,7 @@ _HOMES = {
     "read_markers": "gmr.formats",
     "write": "gmr.formats",
 }
-_MODULES = frozenset({"editing", "evaluation", "markers", "matching"})
+_MODULES = frozenset({"editing", "evaluation", "markers", "matching", "skinning"})
 
 
 def __getattr__(name: str) -> "Any":

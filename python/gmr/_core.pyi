@@ -542,3 +542,40 @@ def trial_positions(
     Raises:
         ValueError: when lengths do not fit, or a row or joint is not there.
     """
+
+# --- skinning ---
+
+class Skin:
+    """A mesh at rest and the joints that its vertices follow: (V, 3), (V, K), (V, K), (V, 3), C-contiguous.
+
+    Raises:
+        ValueError: when shapes do not fit, a joint is not there, or a weight is no weight.
+    """
+
+    def __init__(
+        self,
+        vertices: NDArray[np.float32],
+        joints: NDArray[np.int32],
+        weights: NDArray[np.float32],
+        joint_count: int,
+        normals: NDArray[np.float32] | None = None,
+    ) -> None: ...
+    @property
+    def vertex_count(self) -> int: ...
+    @property
+    def joint_count(self) -> int: ...
+    def blend(
+        self,
+        transforms: NDArray[np.float64],
+        method: str,
+        out: NDArray[np.float32],
+        normals_out: NDArray[np.float32] | None = None,
+        centers: NDArray[np.float32] | None = None,
+        threads: int = 1,
+    ) -> None:
+        """Positions, and normals, (F, V, 3), under transforms (F, 16 B), "linear", "pivot", "running" or
+        "centers"; the last takes centres (1, V, 3).
+        """
+
+    def centers(self, faces: NDArray[np.int32], threads: int) -> NDArray[np.float32]:
+        """Centres of rotation, 3 V, on the surface of ``faces``, 3 T."""

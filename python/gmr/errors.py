@@ -11,6 +11,7 @@ __all__ = [
     "GmrError",
     "MissingExtraError",
     "SkeletonError",
+    "SkinError",
 ]
 
 
@@ -53,6 +54,10 @@ class FormatWarning(UserWarning):
 
 class SkeletonError(GmrError, ValueError):
     """A skeleton that is no forest, or a joint that it does not have."""
+
+
+class SkinError(GmrError, ValueError):
+    """A mesh that cannot follow its joints, or transforms that do not fit it."""
 
 
 class DatasetError(GmrError, ValueError):

@@ -6,6 +6,7 @@
 //! - [`lanes`]: the same arithmetic on one to sixteen frames at once, for each instruction set.
 //! - [`kinematics`]: forward kinematics of many frames at once.
 //! - [`forest`]: the General Motion Representation: any joint can be a root; shift, split, join.
+//! - [`skinning`]: linear and dual quaternion blending, centres of rotation.
 //! - [`matching`]: motion matching: features, exact search, controller, trials.
 //!
 //! Conventions: right-handed, Y up, forward +Z; column vectors; quaternions `(x, y, z, w)`;
@@ -22,6 +23,7 @@ pub mod numbers;
 pub mod parallel;
 pub mod rotation;
 pub mod skeleton;
+pub mod skinning;
 
 pub use error::{JobError, ShapeError, TopologyError};
 pub use forest::Forest;

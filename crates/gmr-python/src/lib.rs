@@ -12,6 +12,7 @@ mod matching;
 mod numbers;
 mod playback;
 mod rotation;
+mod skinning;
 mod trial;
 mod watch;
 
@@ -24,6 +25,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     rotation::register(module)?;
     kinematics::register(module)?;
     forest::register(module)?;
+    skinning::register(module)?;
     index::register(module)?;
     matching::register(module)?;
     trial::register(module)?;

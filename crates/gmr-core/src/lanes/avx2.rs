@@ -4,9 +4,10 @@ use std::arch::x86_64::{
     __m256, __m256d, _CMP_GT_OQ, _mm_loadu_ps, _mm_storeu_ps, _mm256_add_pd, _mm256_add_ps, _mm256_castpd_ps,
     _mm256_castps_pd, _mm256_castps128_ps256, _mm256_castps256_ps128, _mm256_cmp_pd, _mm256_cvtpd_ps,
     _mm256_div_pd, _mm256_div_ps, _mm256_extractf128_ps, _mm256_insertf128_ps, _mm256_loadu_pd,
-    _mm256_movemask_pd, _mm256_mul_pd, _mm256_mul_ps, _mm256_permute2f128_pd, _mm256_set1_pd, _mm256_set1_ps,
-    _mm256_sqrt_pd, _mm256_sqrt_ps, _mm256_storeu_pd, _mm256_sub_pd, _mm256_sub_ps, _mm256_unpackhi_pd,
-    _mm256_unpackhi_ps, _mm256_unpacklo_pd, _mm256_unpacklo_ps,
+    _mm256_loadu_ps, _mm256_movemask_pd, _mm256_mul_pd, _mm256_mul_ps, _mm256_permute2f128_pd,
+    _mm256_set1_pd, _mm256_set1_ps, _mm256_sqrt_pd, _mm256_sqrt_ps, _mm256_storeu_pd, _mm256_storeu_ps,
+    _mm256_sub_pd, _mm256_sub_ps, _mm256_unpackhi_pd, _mm256_unpackhi_ps, _mm256_unpacklo_pd,
+    _mm256_unpacklo_ps,
 };
 
 use super::Kernel;
@@ -33,14 +34,14 @@ register! {
     /// Eight frames.
     F32x8 = __m256 of 8 f32, two of F64x4 beside it;
     add _mm256_add_ps, sub _mm256_sub_ps, mul _mm256_mul_ps, div _mm256_div_ps, sqrt _mm256_sqrt_ps,
-    splat _mm256_set1_ps, load load_f32, store store_f32, narrow narrow,
+    splat _mm256_set1_ps, read _mm256_loadu_ps, write _mm256_storeu_ps, load load_f32, store store_f32, narrow narrow,
 }
 
 register! {
     /// Four frames.
     F64x4 = __m256d of 4 f64;
     add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd, sqrt _mm256_sqrt_pd,
-    splat _mm256_set1_pd, load load_f64, store store_f64, any_above any_above,
+    splat _mm256_set1_pd, read _mm256_loadu_pd, write _mm256_storeu_pd, load load_f64, store store_f64, any_above any_above,
 }
 
 /// Four columns of eight rows.

@@ -47,6 +47,12 @@ pub trait Lanes:
     #[must_use]
     fn sqrt(self) -> Self;
 
+    /// The first [`Lanes::WIDTH`] numbers of `source`, one in each lane.
+    fn load(source: &[Self::Real]) -> Self;
+
+    /// The inverse of [`Lanes::load`].
+    fn store(self, target: &mut [Self::Real]);
+
     /// Four consecutive numbers of [`Lanes::WIDTH`] rows that begin `stride` apart: a register for each column.
     fn load_columns(source: &[Self::Real], stride: usize) -> [Self; 4];
 

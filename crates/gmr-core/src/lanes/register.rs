@@ -3,6 +3,7 @@
 //! What differs between instruction sets is named, operation by operation; what is the same everywhere is here. The
 //! functions that are named take and give raw registers:
 //!
+//! - `read(start)` and `write(start, register)`: consecutive numbers, one to a lane;
 //! - `load(start, stride)` and `store(columns, start, stride)`: [`Lanes::load_columns`](super::Lanes::load_columns)
 //!   and its inverse, of rows that are known to lie inside the array;
 //! - `narrow(first, second)`: the `f64` of the first half of the lanes and of the second, as `f32`;
@@ -13,7 +14,7 @@ macro_rules! register {
     (
         $(#[$doc:meta])* $name:ident = $raw:ident of $width:literal f32, two of $doubles:ident beside it;
         add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, sqrt $sqrt:ident, splat $splat:ident,
-        load $load:ident, store $store:ident, narrow $narrow:ident,
+        read $read:ident, write $write:ident, load $load:ident, store $store:ident, narrow $narrow:ident,
     ) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
@@ -26,7 +27,7 @@ macro_rules! register {
             type Doubles = $crate::lanes::pair::Pair<$doubles>;
             const WIDTH: usize = $width;
 
-            register!(@lanes $name, f32, $width, $sqrt, $splat, $load, $store);
+            register!(@lanes $name, f32, $width, $sqrt, $splat, $read, $write, $load, $store);
 
             #[inline(always)]
             fn load_doubles(source: &[f64], stride: usize) -> [Self::Doubles; 4] {
@@ -43,7 +44,7 @@ macro_rules! register {
     (
         $(#[$doc:meta])* $name:ident = $raw:ident of $width:literal f64;
         add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, sqrt $sqrt:ident, splat $splat:ident,
-        load $load:ident, store $store:ident, any_above $any_above:ident,
+        read $read:ident, write $write:ident, load $load:ident, store $store:ident, any_above $any_above:ident,
     ) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
@@ -56,7 +57,7 @@ macro_rules! register {
             type Doubles = Self;
             const WIDTH: usize = $width;
 
-            register!(@lanes $name, f64, $width, $sqrt, $splat, $load, $store);
+            register!(@lanes $name, f64, $width, $sqrt, $splat, $read, $write, $load, $store);
 
             #[inline(always)]
             fn load_doubles(source: &[f64], stride: usize) -> [Self; 4] {
@@ -91,7 +92,7 @@ macro_rules! register {
             }
         }
     };
-    (@lanes $name:ident, $real:ident, $width:literal, $sqrt:ident, $splat:ident, $load:ident, $store:ident) => {
+    (@lanes $name:ident, $real:ident, $width:literal, $sqrt:ident, $splat:ident, $read:ident, $write:ident, $load:ident, $store:ident) => {
         #[inline(always)]
         fn splat(value: $real) -> Self {
             // SAFETY: registers exist only where `dispatch` has found the instruction set.
@@ -102,6 +103,20 @@ macro_rules! register {
         fn sqrt(self) -> Self {
             // SAFETY: as for `splat`.
             Self(unsafe { $sqrt(self.0) })
+        }
+
+        #[inline(always)]
+        fn load(source: &[$real]) -> Self {
+            assert!($width <= source.len(), "lanes outside the array");
+            // SAFETY: as for `splat`; so many numbers lie in `source`, as just checked.
+            Self(unsafe { $read(source.as_ptr()) })
+        }
+
+        #[inline(always)]
+        fn store(self, target: &mut [$real]) {
+            assert!($width <= target.len(), "lanes outside the array");
+            // SAFETY: as for `splat`; so many numbers lie in `target`, as just checked.
+            unsafe { $write(target.as_mut_ptr(), self.0) }
         }
 
         #[inline(always)]

@@ -17,6 +17,16 @@ macro_rules! plain_number {
         }
 
         #[inline(always)]
+        fn load(source: &[$real]) -> $real {
+            source[0]
+        }
+
+        #[inline(always)]
+        fn store(self, target: &mut [$real]) {
+            target[0] = self;
+        }
+
+        #[inline(always)]
         fn load_columns(source: &[$real], _stride: usize) -> [$real; 4] {
             [source[0], source[1], source[2], source[3]]
         }

@@ -23,14 +23,14 @@ register! {
     /// Four frames.
     F32x4 = __m128 of 4 f32, two of F64x2 beside it;
     add _mm_add_ps, sub _mm_sub_ps, mul _mm_mul_ps, div _mm_div_ps, sqrt _mm_sqrt_ps, splat _mm_set1_ps,
-    load load_f32, store store_f32, narrow narrow,
+    read _mm_loadu_ps, write _mm_storeu_ps, load load_f32, store store_f32, narrow narrow,
 }
 
 register! {
     /// Two frames.
     F64x2 = __m128d of 2 f64;
     add _mm_add_pd, sub _mm_sub_pd, mul _mm_mul_pd, div _mm_div_pd, sqrt _mm_sqrt_pd, splat _mm_set1_pd,
-    load load_f64, store store_f64, any_above any_above,
+    read _mm_loadu_pd, write _mm_storeu_pd, load load_f64, store store_f64, any_above any_above,
 }
 
 /// Four columns of four rows.

@@ -24,6 +24,10 @@ impl<T: Real> Kernel<T> for Trip<'_, T> {
             let same = [x + y, x * y - z, w / y, root + L::splat(T::ONE)];
             L::store_columns(same, &mut self.changed[at..], self.stride);
         }
+        for start in (0..32).step_by(L::WIDTH) {
+            let run = L::load(&self.source[32 * self.stride - 32 + start..]);
+            (run + run).store(&mut self.changed[self.source.len() + start..]);
+        }
     }
 }
 
@@ -31,7 +35,7 @@ fn trip<T: Real>(isa: Isa, stride: usize) -> (Vec<u64>, Vec<u64>, Vec<u64>) {
     let doubles: Vec<f64> =
         (0..32 * stride + 4).map(|k| 1.0 + (k as f64 * 0.618).fract() + k as f64).collect();
     let source: Vec<T> = doubles.iter().map(|&x| T::from_f64(x)).collect();
-    let (mut target, mut changed) = (vec![T::ZERO; source.len()], vec![T::ZERO; source.len()]);
+    let (mut target, mut changed) = (vec![T::ZERO; source.len()], vec![T::ZERO; source.len() + 32]);
     T::dispatch(
         isa,
         Trip { source: &source, doubles: &doubles, stride, target: &mut target, changed: &mut changed },

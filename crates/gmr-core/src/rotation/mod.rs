@@ -15,6 +15,7 @@ pub use euler::{
     Axes, EulerColumns, euler_to_quaternions, quaternions_to_euler, turned_euler_to_quaternions,
 };
 pub(crate) use euler_block::EulerBlock;
+pub(crate) use quaternion::cross;
 pub use quaternion::{
     IDENTITY_F32, IDENTITY_F64, conjugate, dot, exp, log, multiply, multiply_axis, multiply_inverse,
     normalize, rotate, rotate_inverse,

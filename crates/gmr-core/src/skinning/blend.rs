@@ -1,0 +1,159 @@
+//! The job: a skin, and where its joints are in each frame.
+
+use std::ops::Range;
+
+use super::bones::{self, Bones};
+use super::{Skin, SkinError, block, scalar};
+use crate::Isa;
+use crate::error::ShapeError;
+use crate::kinematics::{Piece, take};
+use crate::lanes::{Real, cache};
+use crate::parallel::for_each_piece;
+
+/// Which of `q` and `-q` an influence adds to the sum: the one that points as...
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hemisphere {
+    /// ...that of the joint that weighs most for the vertex (of equal ones the first).
+    Pivot,
+    /// ...the sum of the influences before it. What Blender does; it depends on their order.
+    Running,
+}
+
+/// How transforms are blended.
+#[derive(Debug, Clone, Copy)]
+pub enum Method<'a> {
+    /// Linear blending.
+    Linear,
+    /// Dual quaternion blending, scale and shear linearly before it.
+    DualQuaternion(Hemisphere),
+    /// About the vertices' centres of rotation (V, 3), from [`super::centers_of_rotation`].
+    Centers(&'a [f32]),
+}
+
+/// The job.
+#[derive(Debug, Clone, Copy)]
+pub struct Blend<'a> {
+    /// The mesh and its influences.
+    pub skin: &'a Skin,
+    /// (F, B, 4, 4): the current world matrix of each joint times the inverse of its bind matrix, rows first.
+    pub transforms: &'a [f64],
+    /// F.
+    pub frame_count: usize,
+    /// How they are blended.
+    pub method: Method<'a>,
+    /// How many threads share the work; 0: all cores. The bits do not depend on it.
+    pub threads: usize,
+}
+
+/// Where the answer goes.
+#[derive(Debug)]
+pub struct Blended<'a> {
+    /// (F, V, 3).
+    pub positions: &'a mut [f32],
+    /// (F, V, 3), of length 1; of length 0 where the transforms flatten a vertex's surroundings.
+    pub normals: Option<&'a mut [f32]>,
+}
+
+/// Frames whose bones are made ready at a time: the vertices of a tile meet all of them while they are near.
+const FRAMES_PER_PIECE: usize = 16;
+
+/// Vertices that a thread takes at a time.
+const VERTICES_PER_PIECE: usize = 1 << 15;
+
+/// Computes positions and, where there is room for them, normals.
+///
+/// NaN in a transform gives NaN in the vertices that follow its joint in that frame, and nothing else.
+///
+/// # Errors
+/// When a length does not fit, a transform is not affine, or normals are asked for that the skin does not have.
+pub fn blend(job: &Blend<'_>, out: Blended<'_>) -> Result<(), SkinError> {
+    blend_on(Isa::current(), job, out)
+}
+
+/// [`blend`] on a given instruction set. All give the same bits.
+///
+/// # Errors
+/// As there; and when this machine cannot run `isa`.
+pub fn blend_on(isa: Isa, job: &Blend<'_>, out: Blended<'_>) -> Result<(), SkinError> {
+    check(isa, job, &out)?;
+    let row = 3 * job.skin.vertex_count;
+    if row == 0 {
+        return Ok(());
+    }
+    let padded_centers = match job.method {
+        Method::Centers(centers) => super::skin::padded_rows(centers, job.skin.positions.len() / 3),
+        _ => vec![],
+    };
+    let is_large = cache::is_large(out.positions);
+    let ranges = job.skin.vertex_count.div_ceil(VERTICES_PER_PIECE);
+    let positions = cut(Some(out.positions), row);
+    let normals = cut(out.normals, row);
+    let transforms_per_frame = 16 * job.skin.joint_count;
+    for_each_piece(job.frame_count.div_ceil(FRAMES_PER_PIECE) * ranges, job.threads, |index| {
+        let (group, range) = (index / ranges, index % ranges);
+        let frames = group * FRAMES_PER_PIECE..job.frame_count.min((group + 1) * FRAMES_PER_PIECE);
+        let start = range * VERTICES_PER_PIECE;
+        let vertices = start..job.skin.vertex_count.min(start + VERTICES_PER_PIECE);
+        let mut frames: Vec<Frame<'_>> = frames
+            .map(|frame| Frame {
+                bones: Bones::new(
+                    job.skin,
+                    &job.transforms[frame * transforms_per_frame..][..transforms_per_frame],
+                    job.method,
+                ),
+                positions: take(&positions, frame * ranges + range).unwrap_or_default(),
+                normals: take(&normals, frame * ranges + range),
+            })
+            .collect();
+        let work = Work { skin: job.skin, method: job.method, centers: &padded_centers, vertices, is_large };
+        match isa {
+            Isa::Scalar => scalar::run(&work, &mut frames),
+            _ => f32::dispatch(isa, block::Tiles { work: &work, frames: &mut frames }),
+        }
+    });
+    Ok(())
+}
+
+/// What one thread does at a time, in each of some frames.
+pub(super) struct Work<'a> {
+    pub(super) skin: &'a Skin,
+    pub(super) method: Method<'a>,
+    /// (V, 3), padded, where the method has any.
+    pub(super) centers: &'a [f32],
+    pub(super) vertices: Range<usize>,
+    /// Whether the answer for all frames outgrows the caches.
+    pub(super) is_large: bool,
+}
+
+/// A frame's bones, and room for the vertices of the work.
+pub(super) struct Frame<'a> {
+    pub(super) bones: Bones,
+    pub(super) positions: &'a mut [f32],
+    pub(super) normals: Option<&'a mut [f32]>,
+}
+
+/// The rows of frames, each cut into the vertices of a piece.
+fn cut(array: Option<&mut [f32]>, row: usize) -> Vec<Piece<'_, f32>> {
+    let rows = array.into_iter().flat_map(|array| array.chunks_mut(row));
+    rows.flat_map(|row| row.chunks_mut(3 * VERTICES_PER_PIECE)).map(|piece| Some(piece).into()).collect()
+}
+
+fn check(isa: Isa, job: &Blend<'_>, out: &Blended<'_>) -> Result<(), SkinError> {
+    if !isa.is_available() {
+        return Err(SkinError::Isa(isa));
+    }
+    let (skin, joint_count) = (job.skin, job.skin.joint_count);
+    let room = job.frame_count * 3 * skin.vertex_count;
+    ShapeError::check("transforms", job.frame_count * joint_count * 16, job.transforms.len())?;
+    ShapeError::check("positions", room, out.positions.len())?;
+    if let Some(normals) = &out.normals {
+        if !skin.has_normals() {
+            return Err(SkinError::NoNormals);
+        }
+        ShapeError::check("normals", room, normals.len())?;
+    }
+    if let Method::Centers(centers) = job.method {
+        ShapeError::check("centers", 3 * skin.vertex_count, centers.len())?;
+    }
+    bones::check(job.transforms, joint_count)
+}

@@ -1,0 +1,90 @@
+//! Skins over NumPy arrays.
+
+use gmr_core::skinning::{self, Blend, Blended, Hemisphere, Method, Skin};
+use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::kinematics::{input, output, value_error};
+
+/// A mesh at rest and the joints that its vertices follow, checked once.
+#[pyclass(name = "Skin", module = "gmr._core", frozen)]
+struct PySkin {
+    inner: Skin,
+}
+
+#[pymethods]
+impl PySkin {
+    #[new]
+    #[pyo3(signature = (vertices, joints, weights, joint_count, normals=None))]
+    fn new(
+        vertices: PyReadonlyArray2<'_, f32>,
+        joints: PyReadonlyArray2<'_, i32>,
+        weights: PyReadonlyArray2<'_, f32>,
+        joint_count: usize,
+        normals: Option<PyReadonlyArray2<'_, f32>>,
+    ) -> PyResult<Self> {
+        let normals = normals.as_ref().map(|normals| normals.as_slice()).transpose()?;
+        Skin::new(vertices.as_slice()?, normals, joints.as_slice()?, weights.as_slice()?, joint_count)
+            .map(|inner| Self { inner })
+            .map_err(value_error)
+    }
+
+    #[getter]
+    fn vertex_count(&self) -> usize {
+        self.inner.vertex_count()
+    }
+
+    #[getter]
+    fn joint_count(&self) -> usize {
+        self.inner.joint_count()
+    }
+
+    /// Positions, and normals where there is an array for them, (F, V, 3) float32, under transforms (F, 16 B) float64.
+    #[pyo3(signature = (transforms, method, out, normals_out=None, centers=None, threads=1))]
+    #[allow(clippy::too_many_arguments)]
+    fn blend(
+        &self,
+        py: Python<'_>,
+        transforms: PyReadonlyArray2<'_, f64>,
+        method: &str,
+        out: &Bound<'_, PyAny>,
+        normals_out: Option<&Bound<'_, PyAny>>,
+        centers: Option<&Bound<'_, PyAny>>,
+        threads: usize,
+    ) -> PyResult<()> {
+        let centers = centers.map(|array| input::<f32>(array, "centers", 3)).transpose()?;
+        let mut out = output::<f32>(out, "out", 3)?;
+        let mut normals = normals_out.map(|array| output::<f32>(array, "normals_out", 3)).transpose()?;
+        let method = match (method, &centers) {
+            ("linear", _) => Method::Linear,
+            ("pivot", _) => Method::DualQuaternion(Hemisphere::Pivot),
+            ("running", _) => Method::DualQuaternion(Hemisphere::Running),
+            ("centers", Some(centers)) => Method::Centers(centers.as_slice()?),
+            _ => return Err(PyValueError::new_err(format!("there is no method '{method}'"))),
+        };
+        let (frame_count, transforms) = (transforms.shape()[0], transforms.as_slice()?);
+        let job = Blend { skin: &self.inner, transforms, frame_count, method, threads };
+        let out = Blended {
+            positions: out.as_slice_mut()?,
+            normals: normals.as_mut().map(|normals| normals.as_slice_mut()).transpose()?,
+        };
+        py.detach(|| skinning::blend(&job, out)).map_err(value_error)
+    }
+
+    /// Centres of rotation, 3 V float32, on the surface of `faces`, 3 T int32.
+    fn centers<'py>(
+        &self,
+        py: Python<'py>,
+        faces: PyReadonlyArray1<'py, i32>,
+        threads: usize,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let faces = faces.as_slice()?;
+        let found = py.detach(|| skinning::centers_of_rotation(&self.inner, faces, threads));
+        found.map(|centers| PyArray1::from_vec(py, centers)).map_err(value_error)
+    }
+}
+
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<PySkin>()
+}
