@@ -15,8 +15,8 @@ import strategies
 from gmr import ChannelLayout, Motion, SkeletonError
 from gmr.demo import demo_folder
 from gmr.editing import Limb, cut_at, limb_of, moved_roots, rejoin
-from gmr.editing.keeping import nearest_angles
 from gmr.editing.limbs import limb_that_moves, path_down
+from gmr.editing.nearest_angles import nearest_angles
 from gmr.forest import home
 from gmr.formats.bvh import write_bvh
 from gmr.frames import Rows

@@ -1,0 +1,72 @@
+"""Edits of AMC files: axes, limits and every value that the edit leaves alone stay as they were read."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gmr
+from gmr import Motion, SkeletonError
+from gmr.arrays import read_only
+from gmr.dof_rows import DofRows
+from gmr.editing import lock_feet, reach, warp_path
+from gmr.frames import Pose
+
+
+@pytest.fixture
+def take(data: Path) -> Motion:
+    return gmr.read(data / "amc" / "07_01.amc")
+
+
+def dofs(motion: Motion) -> DofRows:
+    assert isinstance(motion.source, DofRows)
+    return motion.source
+
+
+def test_a_joint_that_was_moved_is_not_lost_but_refused(take: Motion, tmp_path: Path) -> None:
+    apart = take.split("lfoot")
+    moved = apart.translations.copy()
+    moved[:, apart.translated.tolist().index(apart.skeleton.index("lfoot"))] += 3
+    pose = Pose(apart.rotations, apart.translated, read_only(moved), acclaim=apart.acclaim)
+    with pytest.raises(SkeletonError, match="joint 'lfoot' moves"):
+        gmr.write(replace(apart, source=pose).join("lfoot"), tmp_path / "moved.amc")
+
+
+def test_an_edit_keeps_bones_and_all_values_that_it_does_not_change(take: Motion, tmp_path: Path) -> None:
+    shoulder = take.positions(joints=["rhumerus"])[15, 0]
+    edited = reach(take, "rhand", shoulder + (0, 2, 4), frame=15, window=0.05).motion
+    before, after = dofs(take), dofs(edited)
+    arm = {"rclavicle", "rhumerus", "rradius", "rwrist", "rhand"}
+    for joint, name in enumerate(take.skeleton.names):
+        ours = after.values[:, after.acclaim.starts[joint] : after.acclaim.starts[joint + 1]]
+        theirs = before.values[:, before.acclaim.starts[joint] : before.acclaim.starts[joint + 1]]
+        if name not in arm:
+            assert ours.tobytes() == theirs.tobytes()
+        elif ours.shape == theirs.shape:
+            assert ours[:8].tobytes() == theirs[:8].tobytes()
+    old, new = before.acclaim, after.acclaim
+    assert [bone.axis for bone in new.bones] == [bone.axis for bone in old.bones]
+    assert {bone.name for one, bone in zip(old.bones, new.bones, strict=True) if one != bone} <= arm
+    gmr.write(edited, tmp_path / "edited.amc")
+    again = gmr.read(tmp_path / "edited.amc")
+    assert again == edited
+    assert np.abs(again.positions(joints=["rhand"])[15, 0] - (shoulder + (0, 2, 4))).max() < 1e-4
+
+
+@pytest.mark.parametrize("radians", [False, True])
+def test_the_places_of_an_edit_are_those_of_its_values(take: Motion, radians: bool) -> None:
+    if radians:
+        held = dofs(take)
+        values = np.where(held.acclaim.turns, np.radians(held.values), held.values)
+        take = replace(take, source=replace(held, values=values, radians=True))
+    for edit in (lock_feet, lambda motion: warp_path(motion, turn_deg=200)):
+        edited = edit(take).motion
+        as_pose = replace(take, source=replace(take.pose, acclaim=None))
+        wanted = edit(as_pose).motion.positions(dtype=float)
+        assert dofs(edited).radians == radians
+        assert np.abs(edited.positions(dtype=float) - wanted).max() < 1e-9
+        steps = np.abs(np.diff(dofs(edited).values, axis=0)).max()
+        assert steps < (1 if radians else 60)  # no angle jumps by a turn
