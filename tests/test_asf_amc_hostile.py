@@ -177,3 +177,10 @@ def test_a_skeleton_without_degrees_of_freedom_has_frames_all_the_same() -> None
     motion = read_amc(b"1\nroot 90\n2\nroot 0\na\n", asf=still)
     assert motion.positions()[:, 1].tolist() == [[2, 0, 0], [2, 0, 0]]
     assert read_asf(still).skeleton.slots.tolist() == [0, -1]
+
+
+def test_a_motion_whose_frame_numbers_cannot_be_counted_on_is_written_all_the_same() -> None:
+    with pytest.warns(FormatWarning):
+        motion = read_amc(amc(("\n1\n", f"\n{'9' * 30}\n")), asf=asf())
+    assert read_back(motion) == motion
+    assert read_back(motion[1:]) == motion[1:]
