@@ -174,6 +174,16 @@ def test_trees_that_hang_on_each_other_in_a_long_circle_are_refused() -> None:
         read_gmr(f"GMR 1\n{trees}{MOTION}".encode())
 
 
+def test_as_many_roots_as_one_likes_are_read_written_and_joined() -> None:
+    block = "{ OFFSET 0 1 0 LINK r0 0 1 0 CHANNELS 3 Xposition Yposition Zposition }\n"
+    roots = "".join(f"ROOT r{k} {block}" for k in range(1, DEEP // 5))
+    motion = read_gmr(f"{ROOT.replace(' a ', ' r0 ')}}}\n{roots}{MOTION}{'0 1 0 ' * (DEEP // 5)}\n".encode())
+    assert len(motion.roots) == DEEP // 5
+    assert read_gmr(write_gmr(motion)) == motion
+    assert motion.with_roots(["r0"]).roots == ("r0",)
+    assert motion.select(range(1, DEEP // 5)).roots == motion.roots[1:]
+
+
 @pytest.mark.parametrize("count", ["1000000000000000000", "9" * 19, "9" * 5000, "0" * 5000 + "3"])
 def test_a_declared_count_costs_no_memory(count: str) -> None:
     data = TEXTS[0].replace(b"Frames: 2", f"Frames: {count}".encode())

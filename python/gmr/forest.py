@@ -255,9 +255,9 @@ def _without_still_bones(
 
     A joint that has position channels at home stays translated all the same.
     """
-    was_cut = np.asarray(motion.skeleton.links) >= 0
-    whole = [k for k, joint in enumerate(translated.tolist()) if skeleton.parents[joint] >= 0]
-    mended = [k for k in whole if was_cut[skeleton.forest.bones[translated[k]]]]
+    bones = np.asarray(skeleton.forest.bones)[translated]
+    was_cut = np.asarray(motion.skeleton.links)[bones] >= 0
+    mended = np.flatnonzero(was_cut & (skeleton.parents[translated] >= 0)).tolist()
     if not mended or not len(translations):
         return translated, translations
     reach = max(np.abs(translations).max(), np.abs(skeleton.offsets).max())
@@ -268,7 +268,7 @@ def _without_still_bones(
         offset = skeleton.offsets[translated[k]]
         as_offset = np.abs(translations[:, k] - offset).max(axis=0) <= _STILL * reach
         translations[:, k, as_offset] = offset[as_offset]
-        if as_offset.all() and int(skeleton.forest.bones[translated[k]]) not in moving:
+        if as_offset.all() and int(bones[k]) not in moving:
             still.append(k)
     kept = np.setdiff1d(np.arange(len(translated)), still)
     return translated[kept], translations.take(kept, axis=1) if still else translations

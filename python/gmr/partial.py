@@ -53,17 +53,17 @@ def select(motion: Motion, joints: Iterable[Joint]) -> Motion:
         raise SkeletonError("no joint is selected, and a motion needs one; name those to keep")
     at_home = skeleton if skeleton.home is None else skeleton.home
     above = at_home.parents
-    begins = [joint for joint in kept.tolist() if above[joint] < 0 or above[joint] not in kept]
-    freed = np.flatnonzero(
-        (above >= 0) & np.isin(above, kept, invert=True) & np.isin(np.arange(len(above)), kept)
-    )
+    is_kept = np.zeros(skeleton.joint_count, bool)
+    is_kept[kept] = True
+    begins = is_kept & ((above < 0) | ~is_kept[above])
+    freed = np.flatnonzero(begins & (above >= 0))
     part = _only(motion, configuration(skeleton, freed.tolist(), ()), kept)
 
     places = np.full(skeleton.joint_count, -1)
     places[kept] = np.arange(len(kept))
-    cut = [int(places[joint]) for joint in np.flatnonzero(skeleton.links >= 0) if joint in kept]
+    cut = [int(places[joint]) for joint in np.flatnonzero((skeleton.links >= 0) & is_kept)]
     cut = [joint for joint in cut if part.skeleton.parents[joint] >= 0]
-    roots = [int(places[root]) for root in skeleton.roots if root in kept and root not in begins]
+    roots = [int(places[root]) for root in skeleton.roots if is_kept[root] and not begins[root]]
     return carried(part, configuration(part.skeleton, cut, roots))
 
 
