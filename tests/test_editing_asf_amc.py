@@ -36,8 +36,8 @@ def test_a_joint_that_was_moved_is_not_lost_but_refused(take: Motion, tmp_path: 
 
 
 def test_an_edit_keeps_bones_and_all_values_that_it_does_not_change(take: Motion, tmp_path: Path) -> None:
-    shoulder = take.positions(joints=["rhumerus"])[15, 0]
-    edited = reach(take, "rhand", shoulder + (0, 2, 4), frame=15, window=0.05).motion
+    point = take.positions(joints=["rhumerus"])[15, 0] + np.array([0, 2, 4])
+    edited = reach(take, "rhand", point, frame=15, window=0.05).motion
     before, after = dofs(take), dofs(edited)
     arm = {"rclavicle", "rhumerus", "rradius", "rwrist", "rhand"}
     for joint, name in enumerate(take.skeleton.names):
@@ -53,7 +53,7 @@ def test_an_edit_keeps_bones_and_all_values_that_it_does_not_change(take: Motion
     gmr.write(edited, tmp_path / "edited.amc")
     again = gmr.read(tmp_path / "edited.amc")
     assert again == edited
-    assert np.abs(again.positions(joints=["rhand"])[15, 0] - (shoulder + (0, 2, 4))).max() < 1e-4
+    assert np.abs(again.positions(joints=["rhand"])[15, 0] - point).max() < 1e-4
 
 
 @pytest.mark.parametrize("radians", [False, True])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -264,6 +265,18 @@ def test_the_order_of_the_hands_is_that_along_the_bar() -> None:
         one.motion.positions(dtype=float), other.motion.positions(dtype=float), atol=1e-9
     )
     assert [stretch.joint for stretch in other.report.stretch] == ["RightHand", "LeftHand"]
+
+
+def test_hands_of_one_name_are_told_apart_by_their_places() -> None:
+    skeleton = WALK.skeleton
+    names = ["Hand" if name in ("LeftHand", "RightHand") else name for name in skeleton.names]
+    alike = replace(WALK, skeleton=replace(skeleton, names=tuple(names)))
+    hands = skeleton.index("LeftHand"), skeleton.index("RightHand")
+    for one, other in (hands, hands[::-1]):
+        edited, named = grip(alike, (one, other)), grip(WALK, (one, other))
+        assert (edited.motion.positions() == named.motion.positions()).all()
+        for mine, theirs in zip(edited.report.stretch, named.report.stretch, strict=True):
+            assert (mine.missed == theirs.missed).all()
 
 
 def nobody() -> Motion:

@@ -160,8 +160,8 @@ def grip(
     loose = moved_roots(cut_at(motion, ends), dict(zip(ends, np.moveaxis(wrists, 1, 0), strict=True)))
     edited = rejoin(loose, motion, limbs=limbs, hold_rotation=hold_rotation)
     names = motion.skeleton.names[indices[0]], motion.skeleton.names[indices[1]]
-    ordered = sorted(edited.report.stretch, key=lambda one: ends.index(motion.skeleton.index(one.joint)))
-    report = GripReport(names, width, np.linalg.norm(moves, axis=2), tuple(ordered))
+    stretch = edited.report.stretch if ends == sorted(ends) else edited.report.stretch[::-1]
+    report = GripReport(names, width, np.linalg.norm(moves, axis=2), stretch)
     return Edited(edited.motion, report)
 
 
