@@ -259,14 +259,14 @@ def _configured(
     source = motion.source
     if isinstance(source, Rows) and "pose" not in motion.__dict__:
         layout = source.layout
-        return _core.configure_euler(
-            before, after, offsets, layout.translated, source.values, layout.rotation_columns,
-            layout.rotation_axes, layout.translation_columns, layout.adds_offset, total, slots, joints,
+        rows = (
+            source.values, layout.rotation_columns, layout.rotation_axes, layout.translation_columns,
+            layout.adds_offset,
         )  # fmt: skip
+        return _core.configure(before, after, offsets, layout.translated, rows, total, slots, joints)
     pose = motion.pose
-    return _core.configure(
-        before, after, offsets, pose.translated, pose.rotations, pose.translations, total, slots, joints
-    )
+    quaternions = pose.rotations, pose.translations
+    return _core.configure(before, after, offsets, pose.translated, quaternions, total, slots, joints)
 
 
 def _without_still_bones(
