@@ -102,7 +102,8 @@ def contacts(
     """When joints rest on the ground.
 
     Args:
-        motion: any; what a converter put before the recording has no contacts.
+        motion: any; there are no contacts in what a converter put before the recording, nor where the pose is
+            not known (NaN).
         joints: names or indices; by default the ball of each foot (the toe joint), or the ankle where the
             skeleton has no toes. See :mod:`gmr.body.joints`.
         height: metres above the joint's height on the ground: below the first a contact may begin, above the
@@ -161,6 +162,7 @@ def foot_roles(motion: Motion, names: Mapping[str, str | int] | None = None) -> 
     """
     sampled = motion[leading_rest_frames(motion) :]
     poses = sampled[:: max(1, sampled.frame_count // _SAMPLES)].positions(dtype=np.float64)
+    poses = poses[np.isfinite(poses).all(axis=(1, 2))]
     skeleton = motion.skeleton if motion.skeleton.home is None else motion.skeleton.home
     return find_joints(skeleton, poses, names).roles
 

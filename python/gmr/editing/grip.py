@@ -71,7 +71,7 @@ class GripReport:
     Args:
         joints: the two that hold the bar.
         spacing: file units between them on the bar.
-        moved: (F, 2) how far each was to be moved, file units.
+        moved: (F, 2) how far each was to be moved, file units; NaN where the pose is not known.
         stretch: for each arm, how far it was too short.
     """
 
@@ -98,7 +98,7 @@ class GripReport:
         unit = self.stretch[0].unit
         return (
             f"{' and '.join(self.joints)} {unit.said(self.spacing)} apart, moved by "
-            f"{unit.said(float(self.moved.max(initial=0)))} at most; "
+            f"{unit.said(float(np.nanmax(self.moved, initial=0)))} at most; "
             f"{'; '.join(str(one) for one in self.stretch)}{unit.note}"
         )
 

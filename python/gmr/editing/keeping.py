@@ -67,7 +67,7 @@ def _kept_translations(edited: Motion, old: Motion) -> tuple[Floats, NDArray[np.
     columns = {joint: k for k, joint in enumerate(old.translated.tolist())}
     new = edited.translations.copy()
     moved = np.ones(new.shape[:2], bool)
-    reach = max(np.abs(old.translations).max(initial=0), np.abs(old.skeleton.offsets).max(initial=0))
+    reach = max(np.nanmax(np.abs(old.translations), initial=0), np.abs(old.skeleton.offsets).max(initial=0))
     for k, joint in enumerate(edited.translated.tolist()):
         if joint in columns:
             was = old.translations[:, columns[joint]]
