@@ -451,3 +451,12 @@ def test_a_subject_who_is_not_there_is_refused() -> None:
     named = replace(worn(), labels=tuple(f"Anna:{label}" for label in worn().labels))
     with pytest.raises(gmr.GmrError, match="no marker is of the subject 'Ben'; there are 'Anna'"):
         named.fit("ior", subject="Ben")
+
+
+def test_a_gap_as_long_as_is_allowed_is_bridged_whatever_the_rounding() -> None:
+    markers = replace(worn(), frame_time=0.1)
+    for label in ("L_FLE", "L_FME"):
+        markers = hidden(markers, label, 100, 3)
+    assert 0.3 / markers.frame_time < 3
+    fit = markers.fit("ior", max_gap=0.3)
+    assert [stretch.became for stretch in fit.stretches["left_thigh"]] == ["bridged"]

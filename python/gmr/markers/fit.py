@@ -141,7 +141,7 @@ def fit(
         segments,
         markers.frame_time,
         markers.unit,
-        longest=max_gap / markers.frame_time if markers.frame_time else 0,
+        longest=max_gap / markers.frame_time * (1 + 1e-9) if markers.frame_time else 0,
         bones=bones,
         name=markers.name,
     )
