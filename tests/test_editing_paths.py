@@ -323,3 +323,13 @@ def test_a_limb_can_be_stated() -> None:
     edited = reach(WALK, "Neck1", hand(WALK, "Neck1")[100] - [0, 0.4, 0], 100, limb=limb)
     assert edited.report.missed < 1e-9
     assert all(one != other for one, other in pairwise(edited.motion.skeleton.names))
+
+
+def test_a_body_that_cannot_turn_is_not_sent_around_a_bend() -> None:
+    none = np.full(WALK.skeleton.joint_count, -1, np.int32)
+    statue = replace(WALK.skeleton, slots=none, slot_count=0)
+    motion = Motion.from_pose(statue, np.zeros((317, 0, 4)), WALK.translations, 1 / 120, unit=gmr_unit())
+    with pytest.raises(
+        SkeletonError, match="the bone that ends in 'LHipJoint' has no rotation, so it cannot"
+    ):
+        warp_path(motion, turn_deg=70)

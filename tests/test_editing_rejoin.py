@@ -272,5 +272,16 @@ def test_what_cannot_be_joined_is_refused_in_words(call, sentence: str) -> None:
         call()
 
 
+def test_a_bone_without_a_rotation_of_its_own_is_not_turned() -> None:
+    names, slots = ("root", "still", "turning"), np.array([-1, -1, 0], np.int32)
+    parents, ends = np.array([-1, 0, 0], np.int32), np.zeros(3, np.uint8)
+    skeleton = Skeleton(names, parents, np.eye(3), slots, 1, ends)
+    motion = Motion.from_pose(skeleton, np.tile([0.0, 0, 0, 1], (4, 1, 1)), np.zeros((4, 1, 3)), 0.1)
+    half_turn = np.tile([0.0, 1, 0, 0], (4, 1))
+    with pytest.raises(SkeletonError, match="ends in 'still' has no rotation of its own"):
+        moved_roots(motion, {}, {1: half_turn})
+    assert moved_roots(motion, {}, {2: half_turn}).rotations[:, 0].tolist() == half_turn.tolist()
+
+
 def toes() -> Limb:
     return Limb.of(WALK.skeleton, "LeftLeg", "LeftFoot", "LeftToeBase")

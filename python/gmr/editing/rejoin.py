@@ -69,12 +69,21 @@ def moved_roots(
         places: for each root, by index, (F, 3) its new place in the world, file units.
         turns: for joints, by index, (F, 4) what comes after the rotation that the bone ending in each has; a
             root turns all that hangs on it, as every bone does but for those that have a turn of their own.
+
+    Raises:
+        SkeletonError: a bone that is to turn has no rotation of its own.
     """
     columns = {joint: k for k, joint in enumerate(loose.translated.tolist())}
     translations = loose.translations.copy()
     for root, place in places.items():
         translations[:, columns[root]] = place
     slots = loose.skeleton.slots
+    for joint in turns or {}:
+        if slots[joint] < 0:
+            raise SkeletonError(
+                f"the bone that ends in '{loose.skeleton.names[joint]}' has no rotation of its own, so it "
+                "cannot be turned; turn the bone above it"
+            )
     rotations = turned(loose, {int(slots[joint]): turn for joint, turn in (turns or {}).items()})
     pose = Pose(read_only(rotations), loose.translated, read_only(translations), loose.layout)
     return replace(loose, source=pose, dropped=_without_rows(loose))
