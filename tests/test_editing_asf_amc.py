@@ -13,6 +13,8 @@ from gmr import Motion, SkeletonError
 from gmr.arrays import read_only
 from gmr.dof_rows import DofRows
 from gmr.editing import lock_feet, reach, warp_path
+from gmr.editing.limbs import limb_that_moves
+from gmr.editing.roles import known_roles
 from gmr.frames import Pose
 
 
@@ -70,3 +72,18 @@ def test_the_places_of_an_edit_are_those_of_its_values(take: Motion, radians: bo
         assert np.abs(edited.positions(dtype=float) - wanted).max() < 1e-9
         steps = np.abs(np.diff(dofs(edited).values, axis=0)).max()
         assert steps < (1 if radians else 60)  # no angle jumps by a turn
+
+
+def test_a_limb_begins_in_shoulder_or_hip_though_joints_are_named_for_the_bones_above(take: Motion) -> None:
+    names = take.skeleton.names
+    roles = known_roles(take)
+    for joint, limb in (
+        ("rhand", ("rclavicle", "rhumerus", "rhand")),
+        ("ltoes", ("lhipjoint", "lfemur", "ltibia")),
+    ):
+        found = limb_that_moves(take.skeleton, joint, roles)
+        assert tuple(names[one] for one in (found.top, found.middle, found.end)) == limb
+    places = take.positions(dtype=float, joints=["rclavicle", "rhumerus", "rhand"])[10]
+    reachable = np.linalg.norm(np.diff(places, axis=0), axis=1).sum()
+    point = places[0] + 0.98 * reachable * np.array([0.0, 0.0, 1.0])
+    assert reach(take, "rhand", point, frame=10).report.missed < 1e-9

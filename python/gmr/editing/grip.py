@@ -13,6 +13,7 @@ from gmr.editing.easing import blend_weights
 from gmr.editing.edited import Edited, Stretch
 from gmr.editing.limbs import limb_that_moves
 from gmr.editing.rejoin import cut_at, moved_roots, rejoin
+from gmr.editing.roles import known_roles
 from gmr.errors import GmrError, SkeletonError
 from gmr.motion import Motion
 from gmr.tpose import leading_rest_frames
@@ -140,7 +141,8 @@ def grip(
     count = motion.frame_count
     first, end = _frames(motion, frames)
     indices = motion.skeleton.indices(joints).tolist()
-    limbs = [limb_that_moves(motion.skeleton, joint) for joint in indices]
+    roles = known_roles(motion)
+    limbs = [limb_that_moves(motion.skeleton, joint, roles) for joint in indices]
     if not hold_rotation:
         limbs = [replace(limb, end=joint) for limb, joint in zip(limbs, indices, strict=True)]
     if len(indices) != 2 or limbs[0].middle == limbs[1].middle:

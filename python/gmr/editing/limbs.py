@@ -53,7 +53,8 @@ def limb_of(skeleton: Skeleton, end: Joint, roles: Mapping[str, int] | None = No
     Args:
         skeleton: in any configuration; the limb is that at home.
         end: name or index.
-        roles: the joints of the body, as :mod:`gmr.body.joints` finds them; by their names where not given.
+        roles: the joints of the body, as :func:`gmr.editing.roles.known_roles` finds them in a motion; by
+            their names alone where not given.
 
     Raises:
         SkeletonError: there are no two bones above the joint.

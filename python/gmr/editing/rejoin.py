@@ -18,6 +18,7 @@ from gmr.arrays import read_only
 from gmr.editing.edited import Edited, Stretch
 from gmr.editing.keeping import ROUNDING, restored
 from gmr.editing.limbs import Limb, limb_of, path_down
+from gmr.editing.roles import known_roles
 from gmr.editing.scene import Unit, scene_of
 from gmr.editing.two_bone import TwoBone, two_bone
 from gmr.editing.world_turns import turned, world_of
@@ -121,7 +122,8 @@ def rejoin(
     ends = np.flatnonzero(loose.skeleton.links >= 0).tolist()
     ends = [end for end in ends if before.skeleton.links[end] < 0]
     stated = {limb.end: limb for limb in limbs}
-    chosen = [stated.get(end) or limb_of(kept.skeleton, end) for end in ends]
+    roles = None if stated.keys() >= set(ends) else known_roles(before)
+    chosen = [stated.get(end) or limb_of(kept.skeleton, end, roles) for end in ends]
     _check_apart(kept.skeleton, chosen)
 
     whole = _with_bones_of(joined, kept, ends)

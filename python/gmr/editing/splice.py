@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from gmr.arrays import read_only
 from gmr.channels import ChannelLayout
-from gmr.editing.contacts import foot_roles
 from gmr.editing.edited import Edited
 from gmr.editing.ground_path import ground_path
 from gmr.editing.rejoin import moved_roots
+from gmr.editing.roles import body_roles
 from gmr.editing.scene import scene_of
 from gmr.editing.world_turns import turned
 from gmr.errors import GmrError, SkeletonError
@@ -148,7 +148,7 @@ def _turn(lower: Motion, upper: Motion, keep: Keep) -> Floats:
         headings = [ground_path(motion).heading for motion in (lower, upper)]
         return about(scene_of(lower).up_vector, headings[0] - headings[1])
     pelves = [
-        motion.bone_rotations(dtype=np.float64)[:, foot_roles(motion)["left_up_leg"]]
+        motion.bone_rotations(dtype=np.float64)[:, body_roles(motion)["left_up_leg"]]
         for motion in (lower, upper)
     ]
     return multiply(pelves[0], conjugate(pelves[1]))
