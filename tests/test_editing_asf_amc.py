@@ -12,10 +12,11 @@ import gmr
 from gmr import Motion, SkeletonError
 from gmr.arrays import read_only
 from gmr.dof_rows import DofRows
-from gmr.editing import lock_feet, reach, warp_path
-from gmr.editing.limbs import limb_that_moves
+from gmr.editing import grip, lock_feet, reach, warp_path
+from gmr.editing.limbs import hands_of, limb_that_moves
 from gmr.editing.roles import known_roles
 from gmr.frames import Pose
+from gmr.skeleton import Skeleton
 
 
 @pytest.fixture
@@ -87,3 +88,12 @@ def test_a_limb_begins_in_shoulder_or_hip_though_joints_are_named_for_the_bones_
     reachable = np.linalg.norm(np.diff(places, axis=0), axis=1).sum()
     point = places[0] + 0.98 * reachable * np.array([0.0, 0.0, 1.0])
     assert reach(take, "rhand", point, frame=10).report.missed < 1e-9
+
+
+def test_hands_are_found_however_they_are_called(take: Motion) -> None:
+    assert grip(take).report.joints == ("lhand", "rhand")
+    names = [f"mixamorig:{name}" for name in ("Hips", "LeftHand", "RightHand", "LeftHandIndex1")]
+    mixamo = Skeleton.post_rotation(names, [-1, 0, 0, 1], np.zeros((4, 3)))
+    assert hands_of(mixamo) == (1, 2)
+    with pytest.raises(SkeletonError, match="no joint is named as the left hand; name both: joints="):
+        hands_of(Skeleton.post_rotation(["Hips", "RightHand"], [-1, 0], np.zeros((2, 3))))

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from gmr.arrays import frozen
 from gmr.editing.easing import blend_weights
 from gmr.editing.edited import Edited, Stretch
-from gmr.editing.limbs import limb_that_moves
+from gmr.editing.limbs import hands_of, limb_that_moves
 from gmr.editing.rejoin import cut_at, moved_roots, rejoin
 from gmr.editing.roles import known_roles
 from gmr.errors import GmrError, SkeletonError
@@ -106,7 +106,7 @@ class GripReport:
 
 def grip(
     motion: Motion,
-    joints: tuple[Joint, Joint] = ("LeftHand", "RightHand"),
+    joints: tuple[Joint, Joint] | None = None,
     bar: Bar | None = None,
     *,
     spacing: float | None = None,
@@ -120,7 +120,8 @@ def grip(
 
     Args:
         motion: any.
-        joints: the two hands, names or indices, in the order in which they are along the bar.
+        joints: the two hands, names or indices, in the order in which they are along the bar; by default the
+            joints that are named as the left and the right hand.
         bar: on which the hands hold the place that is nearest to where they are (the median over the frames).
             None: a bar that goes along with the hands: their middle is its middle, and it points from the one
             to the other.
@@ -140,13 +141,14 @@ def grip(
     """
     count = motion.frame_count
     first, end = _frames(motion, frames)
-    indices = motion.skeleton.indices(joints).tolist()
+    hands_named = hands_of(motion.skeleton) if joints is None else tuple(joints)
+    indices = motion.skeleton.indices(hands_named).tolist()
     roles = known_roles(motion)
     limbs = [limb_that_moves(motion.skeleton, joint, roles) for joint in indices]
     if not hold_rotation:
         limbs = [replace(limb, end=joint) for limb, joint in zip(limbs, indices, strict=True)]
     if len(indices) != 2 or limbs[0].middle == limbs[1].middle:
-        raise SkeletonError(f"joints={tuple(joints)}: name two joints, one of each arm")
+        raise SkeletonError(f"joints={hands_named}: name two joints, one of each arm")
     hands = motion.positions(dtype=np.float64, joints=indices)
     point, along = _carried_bar(hands, motion, first, end) if bar is None else bar.over(count)
     apart = ((hands[:, 1] - hands[:, 0]) * along).sum(axis=1)[first:end]
