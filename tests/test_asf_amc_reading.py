@@ -272,3 +272,13 @@ def test_odd_items_of_an_asf_are_passed_over_with_a_warning() -> None:
             parse_asf(asf(change))
         with pytest.raises(gmr.FormatError, match=said):
             parse_asf(asf(change), strict=True)
+
+
+def test_names_in_latin_1_are_the_same_in_both_files() -> None:
+    skeleton, frames = (
+        text.decode().replace("thigh", "b\xfcgel").encode("latin-1") for text in (asf(), amc())
+    )
+    with pytest.warns(FormatWarning, match="read as Latin-1"):
+        motion = read_amc(frames, asf=skeleton)
+    assert "b\xfcgel" in motion.skeleton.names
+    assert motion.source.numbers[0].tolist() == read_amc(amc(), asf=asf()).source.numbers[0].tolist()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -266,6 +267,18 @@ def test_the_order_of_the_hands_is_that_along_the_bar() -> None:
     assert [stretch.joint for stretch in other.report.stretch] == ["RightHand", "LeftHand"]
 
 
+def test_hands_of_one_name_are_told_apart_by_their_places() -> None:
+    skeleton = WALK.skeleton
+    names = ["Hand" if name in ("LeftHand", "RightHand") else name for name in skeleton.names]
+    alike = replace(WALK, skeleton=replace(skeleton, names=tuple(names)))
+    hands = skeleton.index("LeftHand"), skeleton.index("RightHand")
+    for one, other in (hands, hands[::-1]):
+        edited, named = grip(alike, (one, other)), grip(WALK, (one, other))
+        assert (edited.motion.positions() == named.motion.positions()).all()
+        for mine, theirs in zip(edited.report.stretch, named.report.stretch, strict=True):
+            assert (mine.missed == theirs.missed).all()
+
+
 def nobody() -> Motion:
     skeleton = Skeleton.post_rotation(["dot"], [-1], np.zeros((1, 3)))
     return Motion.from_pose(skeleton, np.zeros((9, 0, 4)), np.zeros((9, 1, 3)), 0.01, unit=1.0)
@@ -310,3 +323,13 @@ def test_a_limb_can_be_stated() -> None:
     edited = reach(WALK, "Neck1", hand(WALK, "Neck1")[100] - [0, 0.4, 0], 100, limb=limb)
     assert edited.report.missed < 1e-9
     assert all(one != other for one, other in pairwise(edited.motion.skeleton.names))
+
+
+def test_a_body_that_cannot_turn_is_not_sent_around_a_bend() -> None:
+    none = np.full(WALK.skeleton.joint_count, -1, np.int32)
+    statue = replace(WALK.skeleton, slots=none, slot_count=0)
+    motion = Motion.from_pose(statue, np.zeros((317, 0, 4)), WALK.translations, 1 / 120, unit=gmr_unit())
+    with pytest.raises(
+        SkeletonError, match="the bone that ends in 'LHipJoint' has no rotation, so it cannot"
+    ):
+        warp_path(motion, turn_deg=70)

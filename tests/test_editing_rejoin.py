@@ -15,8 +15,8 @@ import strategies
 from gmr import ChannelLayout, Motion, SkeletonError
 from gmr.demo import demo_folder
 from gmr.editing import Limb, cut_at, limb_of, moved_roots, rejoin
-from gmr.editing.keeping import nearest_angles
 from gmr.editing.limbs import limb_that_moves, path_down
+from gmr.editing.nearest_angles import nearest_angles
 from gmr.forest import home
 from gmr.formats.bvh import write_bvh
 from gmr.frames import Rows
@@ -270,6 +270,17 @@ def test_limbs_are_found_by_names_and_else_by_length() -> None:
 def test_what_cannot_be_joined_is_refused_in_words(call, sentence: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(gmr.GmrError, match=sentence):
         call()
+
+
+def test_a_bone_without_a_rotation_of_its_own_is_not_turned() -> None:
+    names, slots = ("root", "still", "turning"), np.array([-1, -1, 0], np.int32)
+    parents, ends = np.array([-1, 0, 0], np.int32), np.zeros(3, np.uint8)
+    skeleton = Skeleton(names, parents, np.eye(3), slots, 1, ends)
+    motion = Motion.from_pose(skeleton, np.tile([0.0, 0, 0, 1], (4, 1, 1)), np.zeros((4, 1, 3)), 0.1)
+    half_turn = np.tile([0.0, 1, 0, 0], (4, 1))
+    with pytest.raises(SkeletonError, match="ends in 'still' has no rotation of its own"):
+        moved_roots(motion, {}, {1: half_turn})
+    assert moved_roots(motion, {}, {2: half_turn}).rotations[:, 0].tolist() == half_turn.tolist()
 
 
 def toes() -> Limb:

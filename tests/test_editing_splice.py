@@ -17,8 +17,9 @@ from gmr import DatasetError, GmrError, Motion, SkeletonError
 from gmr.demo import demo_folder
 from gmr.editing import ground_path, splice, unite, warp_path
 from gmr.formats.bvh import write_bvh
+from gmr.frames import Pose
 from gmr.partial import below
-from gmr.quaternions import about, conjugate, multiply
+from gmr.quaternions import about, conjugate, multiply, rotated
 
 Floats = NDArray[np.float64]
 
@@ -202,6 +203,15 @@ def test_what_was_spliced_is_written_without_jumps() -> None:
     assert jumps[2] < max(jumps[:2]) + 3
 
 
+def upended(motion: Motion) -> Motion:
+    """The same with +Z up."""
+    pose, quarter = motion.pose, np.array([np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)])
+    rotations = pose.rotations.copy()
+    rotations[:, 0] = multiply(quarter, rotations[:, 0])
+    source = Pose(rotations, pose.translated, rotated(quarter, pose.translations), pose.layout)
+    return replace(motion, source=source)
+
+
 def refusals() -> dict[str, tuple[Callable[[], object], type[Exception], str]]:
     other = RUN.resample(60)
     arms = WALK.select(below(WALK.skeleton, "Spine"))
@@ -210,6 +220,7 @@ def refusals() -> dict[str, tuple[Callable[[], object], type[Exception], str]]:
         "joint": (lambda: splice(WALK, RUN, "Spin"), SkeletonError, "no joint 'Spin'; did you mean 'Spine'"),
         "rates": (lambda: splice(WALK, other), GmrError, "120 frames a second, the upper one 60; resample"),
         "units": (lambda: splice(WALK.with_unit("cm"), RUN), GmrError, "unit of 0.01 metres.*None; declare"),
+        "up": (lambda: splice(WALK, upended(RUN)), GmrError, r"up is \+Y in the lower .* \+Z in the upper"),
         "keep": (lambda: splice(WALK, RUN, keep="arms"), GmrError, "'heading', 'pelvis' or 'world'"),  # type: ignore[arg-type]
         "blend": (lambda: splice(WALK, RUN, blend=-1), GmrError, "a number of bones, 0 or more"),
         "leaf": (lambda: splice(WALK, RUN, "Head_end"), SkeletonError, "nothing hangs on 'Head_end'"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -319,3 +320,24 @@ def test_an_added_tpose_is_seen_in_any_configuration_and_without_dummies() -> No
     motion = gmr.read(demo_folder() / "07_01.bvh")
     for changed in (motion, motion.drop_dummies(), motion.with_roots(["LeftFoot", "Head"])):
         assert leading_rest_frames(changed) == 1
+
+
+@pytest.mark.parametrize("threads", [0, 1, 3])
+def test_the_bits_do_not_depend_on_the_threads(walk_path: Path, threads: int) -> None:
+    walk = gmr.read(walk_path)
+    operations: dict[str, Callable[..., Motion]] = {
+        "with_roots": lambda **how: walk.with_roots(["Hips", "LeftHand"], **how),
+        "shift_root": lambda **how: walk.shift_root("Neck", **how),
+        "split": lambda **how: walk.split("LeftHand", **how),
+        "join": lambda **how: walk.with_roots(["Head", "LeftHand"]).join("LeftHand", **how),
+        "select": lambda **how: walk.select(["Hips", "LeftLeg", "Head"], **how),
+        "drop_dummies": lambda **how: walk.shift_root("Neck").drop_dummies(**how),
+    }
+    for operation in operations.values():
+        usual, found = operation(), operation(threads=threads)
+        assert found == usual
+        assert found.rotations.tobytes() == usual.rotations.tobytes()
+        with pytest.raises(ValueError, match="there cannot be -1 threads"):
+            operation(threads=-1)
+        with pytest.raises(TypeError, match="threads must be a whole number"):
+            operation(threads="all")

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import tracemalloc
 import warnings
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -14,6 +12,7 @@ from hypothesis import strategies as st
 
 from gmr import FormatError, FormatWarning, Motion
 from gmr.formats.gmr import read_gmr, write_gmr, write_gmrb
+from hostile import Change, changed, changes, cut_anywhere, overwritten, peak_of, refused_or_read
 
 VALID = Path(__file__).parent / "data" / "gmr" / "valid"
 TEXTS = [(VALID / f"{name}.gmr").read_bytes() for name in ("arm", "rows", "cut_and_turned_over", "names")]
@@ -24,42 +23,16 @@ MOTION = " MOTION Frames: 1 Frame Time: 1\n"
 
 
 def attempt(data: bytes) -> Motion | None:
-    """The motion, or None where it is refused in a sentence; anything else that is raised fails the test."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", FormatWarning)
-        try:
-            return read_gmr(data, name="some.gmr")
-        except FormatError as error:
-            said = str(error)
-    assert said.startswith("some.gmr")
-    assert len(said) < 1000
-    return None
-
-
-def peak_of(work: Callable[[], object]) -> int:
-    """Bytes that were allocated at most."""
-    tracemalloc.start()
-    try:
-        work()
-        return tracemalloc.get_traced_memory()[1]
-    finally:
-        tracemalloc.stop()
+    return refused_or_read(lambda: read_gmr(data, name="some.gmr"), "some.gmr")
 
 
 @pytest.mark.parametrize("data", TEXTS)
 def test_a_text_cut_anywhere_is_refused_or_read_as_far_as_it_goes(data: bytes) -> None:
     whole = read_gmr(data)
-    for length in range(len(data)):
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            try:
-                motion = read_gmr(data[:length])
-            except FormatError:
-                continue
-        assert all(warning.category is FormatWarning for warning in caught)
+    for motion, is_said in cut_anywhere(data, read_gmr):
         assert motion.skeleton == whole.skeleton
         assert motion.frame_count <= whole.frame_count
-        assert caught or motion.frame_count == whole.frame_count
+        assert is_said or motion.frame_count == whole.frame_count
 
 
 @pytest.mark.parametrize("data", BINARIES)
@@ -68,41 +41,19 @@ def test_a_binary_file_cut_anywhere_is_refused(data: bytes) -> None:
         assert attempt(data[:length]) is None
 
 
-words = st.one_of(
-    st.binary(max_size=8),
-    st.sampled_from(
-        [
-            b"{", b"}", b"nan", b"1e400", b"-", b"\0", b"\r", b"MOTION", b'"', b"#2", b"TURN 1", b"TOP 0 0 0",
-            b"LINK Elbow 25 0 0", b"NUMBER 1", b"ROOT a {", b"End Site {", b"CHANNELS 1 Idle",
-            b"POST replace", b"TRANSLATED 2 0 1", b"KIND Site",
-            b"9" * 40, b"\\ud800", b"[", b"null", b"-1", b"true",
-        ]
-    ),
-)  # fmt: skip
+WORDS = [
+    b"{", b"}", b"nan", b"1e400", b"-", b"\0", b"\r", b"MOTION", b'"', b"#2", b"TURN 1", b"TOP 0 0 0",
+    b"LINK Elbow 25 0 0", b"NUMBER 1", b"ROOT a {", b"End Site {", b"CHANNELS 1 Idle",
+    b"POST replace", b"TRANSLATED 2 0 1", b"KIND Site",
+    b"9" * 40, b"\\ud800", b"[", b"null", b"-1", b"true",
+]  # fmt: skip
 
 
-def changed(draw: st.DataObject, data: bytes) -> bytes:
-    """The file with something else in a few places."""
-    for _ in range(draw.draw(st.integers(1, 4))):
-        at, length = draw.draw(st.integers(0, len(data))), draw.draw(st.integers(0, 12))
-        data = data[:at] + draw.draw(words) + data[at + length :]
-    return data
-
-
-def overwritten(draw: st.DataObject, data: bytes) -> bytes:
-    """The file, as long as it was, with other bytes in a few places."""
-    held = bytearray(data)
-    for _ in range(draw.draw(st.integers(1, 4))):
-        at, new = draw.draw(st.integers(0, len(data) - 1)), draw.draw(words)
-        held[at : at + len(new)] = new[: len(data) - at]
-    return bytes(held)
-
-
-@given(st.data(), st.sampled_from(TEXTS + BINARIES))
+@given(changes(WORDS), st.sampled_from(TEXTS + BINARIES), st.booleans())
 def test_a_file_with_anything_in_it_is_refused_or_reads_back_as_it_was_read(
-    draw: st.DataObject, data: bytes
+    some: list[Change], data: bytes, keeps_length: bool
 ) -> None:
-    motion = attempt(draw.draw(st.sampled_from([changed, overwritten]))(draw, data))
+    motion = attempt(overwritten(data, some) if keeps_length else changed(data, some))
     if motion is None:
         return
     try:
@@ -172,6 +123,16 @@ def test_trees_that_hang_on_each_other_in_a_long_circle_are_refused() -> None:
     )
     with pytest.raises(FormatError, match="hangs on 'j1', which hangs on it in turn"):
         read_gmr(f"GMR 1\n{trees}{MOTION}".encode())
+
+
+def test_as_many_roots_as_one_likes_are_read_written_and_joined() -> None:
+    block = "{ OFFSET 0 1 0 LINK r0 0 1 0 CHANNELS 3 Xposition Yposition Zposition }\n"
+    roots = "".join(f"ROOT r{k} {block}" for k in range(1, DEEP // 5))
+    motion = read_gmr(f"{ROOT.replace(' a ', ' r0 ')}}}\n{roots}{MOTION}{'0 1 0 ' * (DEEP // 5)}\n".encode())
+    assert len(motion.roots) == DEEP // 5
+    assert read_gmr(write_gmr(motion)) == motion
+    assert motion.with_roots(["r0"]).roots == ("r0",)
+    assert motion.select(range(1, DEEP // 5)).roots == motion.roots[1:]
 
 
 @pytest.mark.parametrize("count", ["1000000000000000000", "9" * 19, "9" * 5000, "0" * 5000 + "3"])

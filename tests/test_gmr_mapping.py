@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -137,3 +138,13 @@ def test_numbers_that_are_not_finite_are_found_by_who_looks(motion: gmr.Motion) 
     assert np.isnan(found.translations).sum() == 1
     with pytest.raises(gmr.FormatError, match="joint 'LeftFoot', Xposition is nan in frame 5"):
         read_gmr(bytes(raw), strict=True)
+
+
+def test_quaternions_of_other_lengths_are_refused_where_all_is_looked_at(motion: gmr.Motion) -> None:
+    pose = motion.pose
+    rotations = pose.rotations.copy()
+    rotations[5, 0] *= 1.1
+    written = write_gmrb(replace(motion, source=Pose(rotations, pose.translated, pose.translations)))
+    assert read_gmr(written).rotations[5, 0].tolist() == rotations[5, 0].tolist()
+    with pytest.raises(gmr.FormatError, match="1 quaternions are not of length 1, the first in frame 5"):
+        read_gmr(written, strict=True)

@@ -141,7 +141,7 @@ def test_convert_never_writes_what_was_not_seen(tmp_path: Path, capsys: pytest.C
     [
         (["--relation", "rizzoli"], "there is no relation 'rizzoli'"),
         (["--relation", "plug_in_gait"], "no part of 'Plug-in Gait full body' can be fitted"),
-        (["--subject", "Anna"], "no part of 'IOR full body' can be fitted"),
+        (["--subject", "Anna"], "walk.c3d: no marker is of the subject 'Anna'"),
     ],
 )
 def test_what_does_not_fit_is_refused_in_a_sentence(

@@ -418,3 +418,45 @@ def test_a_real_arm_is_fitted_by_a_relation_of_ones_own() -> None:
     lengths = {bone.lower: bone.length for bone in fit.report.bones}
     assert 150 < lengths["RightForeArm"] < 350
     assert all(part.mean < 6 for part in fit.report.parts)
+
+
+def test_parts_that_no_frame_shows_together_are_not_joined() -> None:
+    markers = worn()
+    half = markers.frame_count // 2
+    relation = load_relation("ior")
+    for name, first in (("left_thigh", half), ("left_shank", 0)):
+        part = relation.by_name[name]
+        for label in (*part.markers, *part.loose):
+            markers = hidden(markers, label, first, half + 1 if first else half)
+    fit = markers.fit("ior")
+    assert fit.left_out == {"left_shank": "its joint cannot be placed: no frame shows it and the part above"}
+    assert "LeftFoot" in fit.motion.roots
+
+
+def test_directions_that_are_one_line_are_refused() -> None:
+    text = """
+    [parts.pelvis]
+    joint = "Hips"
+    markers = ["L_IAS", "R_IAS", "L_IPS", "R_IPS"]
+    left = { from = ["R_IAS"], to = ["L_IAS"] }
+    up = { from = ["L_IAS"], to = ["R_IAS"] }
+    """
+    with pytest.raises(gmr.GmrError, match=r"\[parts.pelvis\]: its two directions are one line"):
+        worn().fit(read_relation(text.encode(), "mine.toml"))
+
+
+def test_a_subject_who_is_not_there_is_refused() -> None:
+    with pytest.raises(gmr.GmrError, match="no marker is of the subject 'Ben'; labels begin with no name"):
+        worn().fit("ior", subject="Ben")
+    named = replace(worn(), labels=tuple(f"Anna:{label}" for label in worn().labels))
+    with pytest.raises(gmr.GmrError, match="no marker is of the subject 'Ben'; there are 'Anna'"):
+        named.fit("ior", subject="Ben")
+
+
+def test_a_gap_as_long_as_is_allowed_is_bridged_whatever_the_rounding() -> None:
+    markers = replace(worn(), frame_time=0.1)
+    for label in ("L_FLE", "L_FME"):
+        markers = hidden(markers, label, 100, 3)
+    assert 0.3 / markers.frame_time < 3
+    fit = markers.fit("ior", max_gap=0.3)
+    assert [stretch.became for stretch in fit.stretches["left_thigh"]] == ["bridged"]

@@ -41,6 +41,9 @@ GROUND, MARK, FAINT = "#9aa0a6", "#1d8a4e", "#c9cdd2"
 ALONG = np.array([0.0, 0.0, 1.0])
 """Where the demo clips walk to; to the right in side views, which look at their right side."""
 
+SMALL = 'font-size="12" fill="#5a5f66"'
+SIDES = (LEFT, "left limbs"), (RIGHT, "right limbs")
+
 SKIPPED = ("Thumb", "Finger", "Index", "_end")
 """Parts of names of joints whose bones are too small to draw, but the tips of toes."""
 
@@ -174,8 +177,11 @@ def strip(
         figure(page, motion, places[frame] - places[frame, hips] * [1, 0, 1], camera, **looks)  # type: ignore[arg-type]
 
 
-def title(page: Page, x: float, y: float, words: str, more: str = "") -> None:
-    page.text(x, y, f'<tspan font-weight="bold">{words}</tspan> {more}')
+def title(page: Page, words: str, more: str, *key: tuple[str, str]) -> None:
+    """The heading, and below it what each colour means."""
+    page.text(24, 28, f'<tspan font-weight="bold">{words}</tspan>: {more}')
+    said = [f'<tspan fill="{colour}" font-weight="bold">{name}</tspan>' for colour, name in key]
+    page.text(24, 48, " &#160;&#160; ".join(said), SMALL)
 
 
 def locked(folder: Path) -> None:
@@ -183,14 +189,15 @@ def locked(folder: Path) -> None:
     motion = gmr.read(demo_folder() / "07_01.bvh")
     edited = lock_feet(motion)
     held = edited.report.contacts
-    page = Page(960, 552)
-    title(page, 24, 28, "lock_feet", "07_01: a walk, and the same with feet held where they stand")
+    page = Page(960, 592)
+    title(page, "lock_feet", "a walk, and the same with its feet held where they stand", *SIDES,
+          (MARK, "ball of the left foot"))  # fmt: skip
     frames = list(range(20, 317, 24))
-    for y, clip, words in ((190, motion, "before"), (360, edited.motion, "after")):
+    for y, clip, words in ((214, motion, "before"), (384, edited.motion, "after")):
         ground(page, 24, 936, y)
         strip(page, clip, frames, 62, y, 69, 78)
         page.text(24, y - 138, words)
-    contact_bars(page, held, 62, 382, 69 / 24, frames[0], frames[-1])
+    contact_bars(page, held, 62, 420, 69 / 24, frames[0], frames[-1])
     stance = held.of("LeftToeBase")[0]
     for x, clip, words in ((60, motion, "before"), (532, edited.motion, "after")):
         joints = [
@@ -198,9 +205,9 @@ def locked(folder: Path) -> None:
         ]
         legs = metres(clip)[stance.first : stance.end, joints]
         middle = np.median(metres(motion)[stance.first : stance.end, joints[2]], axis=0)
-        camera = Camera(ALONG, 620, (x + 170, 536))
+        camera = Camera(ALONG, 620, (x + 170, 576))
         page.parts.append(
-            f'<clipPath id="{words}"><rect x="{x - 36}" y="424" width="440" height="124"/></clipPath>'
+            f'<clipPath id="{words}"><rect x="{x - 36}" y="464" width="440" height="124"/></clipPath>'
         )
         page.parts.append(f'<g clip-path="url(#{words})">')
         shown = legs - middle * [1, 0, 1]
@@ -210,10 +217,10 @@ def locked(folder: Path) -> None:
         for leg in shown[::3]:
             page.circle(camera(leg[2]), 3.2, f'fill="{MARK}"')
         page.parts.append("</g>")
-        ground(page, x - 36, x + 404, 536)
+        ground(page, x - 36, x + 404, 576)
         slid = edited.report.slide_before_mm if words == "before" else edited.report.slide_after_mm
-        page.text(x + 216, 450, f"{words}: the ball of the foot")
-        page.text(x + 216, 468, f"goes {slid[0]:.0f} mm while it rests")
+        page.text(x + 216, 482, f"{words}, one stance overlaid:")
+        page.text(x + 216, 500, f"the ball goes {slid[0]:.0f} mm")
     page.write(folder / "edit_lock_feet.svg")
 
 
@@ -227,7 +234,9 @@ def contact_bars(page: Page, held: Contacts, x: float, y: float, step: float, fi
                     [[x + (a - first) * step, y + 11 * row], [x + (b - first) * step, y + 11 * row]]
                 )
                 page.line(ends, colour, 6)
-    page.text(24, y + 9, "rests", 'font-size="12" fill="#5a5f66"')
+    page.text(
+        24, y - 12, "when each foot rests on the ground, found in the walk before; time as above", SMALL
+    )
 
 
 def gripped(folder: Path) -> None:
@@ -237,12 +246,14 @@ def gripped(folder: Path) -> None:
     ahead = np.stack([np.sin(path.heading), np.zeros(len(path)), np.cos(path.heading)], axis=1)
     place = np.insert(path.ground, 1, 0.0, axis=1) * UNIT + 0.34 * ahead + [0, 1.0, 0]
     edited = grip(motion, bar=Bar(place / UNIT, np.cross(ahead, [0, 1, 0])), spacing=0.5 / UNIT)
-    page = Page(960, 420)
-    title(page, 24, 28, "grip", "07_01 with both hands on a bar that goes ahead of the body")
+    page = Page(960, 452)
+    title(
+        page, "grip", "a walk with both hands on a bar that goes ahead of the body", *SIDES, (MARK, "the bar")
+    )
     right = np.array([np.sin(1.0), 0.0, np.cos(1.0)])
-    for y, clip in ((196, motion), (388, edited.motion)):
+    for y, clip in ((218, motion), (420, edited.motion)):
         places = metres(clip)
-        page.text(24, y - 140, "before" if clip is motion else "after")
+        page.text(24, y - 142, "before" if clip is motion else "after")
         for k, frame in enumerate(range(20, 317, 36)):
             moved = places[frame] - np.insert(path.ground[frame] * UNIT, 1, 0.0)
             camera = Camera(right, 84, (80 + 100 * k, y), 0.2)
@@ -258,11 +269,16 @@ def spliced(folder: Path) -> None:
     """The legs of a walk and the arms of a run."""
     walk, run = (gmr.read(demo_folder() / f"{name}.bvh") for name in ("07_01", "09_01"))
     edited = splice(walk, run, "Spine")
-    page = Page(960, 620)
-    title(page, 24, 28, "splice", "the legs of a walk (07_01), the upper body of a run (09_01)")
+    page = Page(960, 644)
     below, above = "#5a5f66", "#d08a1d"
+    title(page, "splice", "the legs of a walk, the upper body of a run", (below, "of the walk"),
+          (above, "of the run"))  # fmt: skip
     frames = list(range(8, 149, 12))
-    for y, clip, words in ((200, walk, "lower"), (392, run, "upper"), (584, edited.motion, "spliced")):
+    for y, clip, words in (
+        (224, walk, "lower: a walk"),
+        (416, run, "upper: a run"),
+        (608, edited.motion, "spliced"),
+    ):
         ground(page, 24, 936, y)
         page.text(24, y - 140, words)
         places, hips = metres(clip), clip.skeleton.index("Hips")
@@ -288,19 +304,27 @@ def warped(folder: Path) -> None:
     motion = gmr.read(demo_folder() / "07_01.bvh")
     bent = warp_path(motion, turn_deg=70)
     held = warp_path(motion, turn_deg=70, lock=True)
-    page = Page(960, 676)
-    title(page, 24, 28, "warp_path", "07_01, a straight walk, sent around a bend of 70 degrees")
-    rows = ((motion, bent.report.before, "before"), (bent.motion, bent.report.path, "turn_deg=70"),
-            (held.motion, held.report.path, "turn_deg=70, lock=True"))  # fmt: skip
+    page = Page(960, 700)
+    title(
+        page,
+        "warp_path",
+        "a straight walk, sent around a bend of 70 degrees",
+        (LEFT, "left foot where it rests"),
+        (RIGHT, "right foot where it rests"),
+        (MARK, "way of its ball"),
+        (GROUND, "path of the body"),
+    )
+    rows = ((motion, bent.report.before, "before, from above"),
+            (bent.motion, bent.report.path, "turn_deg=70, from above"),
+            (held.motion, held.report.path, "turn_deg=70, lock=True, from above"))  # fmt: skip
     slides = [warp_path(motion).report.slide_mm, bent.report.slide_mm, held.report.lock.slide_after_mm]  # type: ignore[union-attr]
-    spots = ((24, 164, 62), (24, 410, 190), (500, 410, 190))
+    spots = ((24, 186, 84), (24, 434, 214), (500, 434, 214))
     for (x, y, above), (clip, path, words), slid in zip(spots, rows, slides, strict=True):
         page.text(x, above, words)
-        page.text(
-            x, above + 18, f"a foot slides {slid.mean():.0f} mm a step", 'font-size="12" fill="#5a5f66"'
-        )
+        page.text(x, above + 18, f"a foot slides {slid.mean():.0f} mm while it rests", SMALL)
         footprints(page, clip, bent.report.contacts, path, Camera(ALONG, 112, (x + 290, y), np.pi / 2))
-    camera = Camera(ALONG, 112, (480, 666), 0.35)
+    page.text(24, 500, "turn_deg=70, lock=True, from the side")
+    camera = Camera(ALONG, 112, (480, 690), 0.35)
     places = metres(held.motion)
     page.line(camera(np.insert(held.report.path.ground * UNIT, 1, 0.0, axis=1)), FAINT, 2)
     for frame in range(310, 3, -34):
@@ -328,18 +352,19 @@ def reached(folder: Path) -> None:
     target = before[frame, motion.skeleton.index("RightArm")] + [-0.14, 0.08, 0.42]
     edited = reach(motion, "RightHand", target / UNIT, frame, window=0.6)
     after = metres(edited.motion)
-    page = Page(960, 340)
+    page = Page(960, 372)
     title(
         page,
-        24,
-        28,
         "reach",
-        "07_01: the right hand passes through a point, with 0.6 s to get there and back",
+        "the right hand of a walker passes through a point, with 0.6 s to get there and 0.6 s to get back",
+        *SIDES,
+        (MARK, "the point, and the path of the hand"),
+        (GROUND, "before: the arm, and the path of the hand (dashed)"),
     )
-    camera = Camera(np.array([np.sin(0.3), 0.0, np.cos(0.3)]), 150, (0, 316), 0.08)
+    camera = Camera(np.array([np.sin(0.3), 0.0, np.cos(0.3)]), 176, (0, 356), 0.08)
     middle = camera(before[frame, motion.skeleton.index("Hips")])
-    camera.origin = (420 - middle[0], 316)
-    ground(page, 24, 936, 316)
+    camera.origin = (440 - middle[0], 348)
+    ground(page, 24, 936, 352)
     for moment in range(frame - 96, frame + 145, 24):
         looks = 1.0 if moment == frame else 0.45
         figure(page, motion, before[moment], camera, opacity=0.18, colour="#5a5f66")

@@ -16,7 +16,7 @@ import gmr
 from gmr import Motion
 from gmr.demo import demo_folder
 
-BLUE, ORANGE, GREEN, PURPLE, RED = "#2a6ea9", "#c8711a", "#3a8a4d", "#7a4fa3", "#c0392b"
+BLUE, ORANGE, GREEN, PURPLE, TEAL, RED = "#2a6ea9", "#c8711a", "#3a8a4d", "#7a4fa3", "#12a3a3", "#c0392b"
 INK, GREY, PALE = "#1c1c1c", "#777777", "#bbbbbb"
 RADIUS = 7.0
 PANEL_WIDTH, TREE_HEIGHT, LINE = 330.0, 190.0, 21.0
@@ -157,7 +157,7 @@ HIP_NAMES = {"hips": (32.0, 4.0), "spine": (34.0, 5.0), "left": (-26.0, 5.0), "r
 def two_forms() -> str:
     """Post- and pre-rotation: what a rotation turns."""
     post = Panel(
-        "post-rotation: BVH, AMC, glTF",
+        "post-rotation: BVH, glTF",
         HIP,
         [("hips", name, BLUE) for name in ("spine", "left", "right")],
         ["hips"],
@@ -165,7 +165,7 @@ def two_forms() -> str:
         notes=("P_child = P_hips + R_hips t_child", "one rotation, in the joint, turns all three"),
     )
     pre = Panel(
-        "pre-rotation: GMR",
+        "pre-rotation: GMR, ASF/AMC",
         HIP,
         [("hips", "spine", GREEN), ("hips", "left", ORANGE), ("hips", "right", PURPLE)],
         ["hips"],
@@ -180,7 +180,7 @@ def two_forms() -> str:
         beside=HIP_NAMES,
         notes=("bone j turns with slot s(j)", "bones that turn alike share a slot (one colour)"),
     )
-    return figure([post, pre, slots])
+    return figure([post, pre, slots], key=(KEY[0], "one colour: bones that one rotation turns"))
 
 
 SHIFTED = {
@@ -198,7 +198,7 @@ def shift_root() -> str:
     before = Panel(
         "root 0",
         SHIFTED,
-        [("0", "1", BLUE), ("0", "0i", GREEN), ("0", "0k", ORANGE), ("1", "1j", PURPLE), ("1", "1l", RED)],
+        [("0", "1", BLUE), ("0", "0i", GREEN), ("0", "0k", ORANGE), ("1", "1j", PURPLE), ("1", "1l", TEAL)],
         ["0"],
         notes=(
             "place in the world: g",
@@ -211,7 +211,7 @@ def shift_root() -> str:
     after = Panel(
         "root 1",
         SHIFTED,
-        [("1", "0", BLUE), ("0", "0i", GREEN), ("0", "0k", ORANGE), ("1", "1j", PURPLE), ("1", "1l", RED)],
+        [("1", "0", BLUE), ("0", "0i", GREEN), ("0", "0k", ORANGE), ("1", "1j", PURPLE), ("1", "1l", TEAL)],
         ["1"],
         notes=(
             "g' = R_0 R_1 t_1 + g",
@@ -311,7 +311,8 @@ def dummies() -> str:
         beside=names,
         notes=("R_c'' = R_d' R_c' for each child c of dummy d", "c hangs on d's parent by its own offset"),
     )
-    return figure([before, after], "drop")
+    key = (KEY[0], "ring: the dummy", "one colour: bones that one rotation turns")
+    return figure([before, after], "drop", key)
 
 
 def configurations() -> str:
@@ -325,7 +326,7 @@ def configurations() -> str:
             "C_5: hips, hands, feet",
             motion.with_roots(["Hips", "LeftHand", "RightHand", "LeftFoot", "RightFoot"]),
         ),
-        (f"C_{len(proper)}: all joints", motion.with_roots(proper)),
+        (f"C_{len(proper)}: all joints but tips", motion.with_roots(proper)),
     ]
     width, height, head = 205.0, 330.0, 40.0
     places = motion.positions(dtype=float)[130]
@@ -342,7 +343,14 @@ def configurations() -> str:
         f'<g transform="translate({12 + k * width} 0)">{_body(title, one, place, width)}</g>'
         for k, (title, one) in enumerate(choices)
     ]
-    key = "red square: a root &#160;&#160; line: a bone &#160;&#160; dotted: a soft link"
+    key = " &#160;&#160; ".join(
+        (
+            "red square: a root, placed in the world",
+            "dot: any other joint",
+            "line: a bone",
+            "dotted: a bone that is cut, a soft link",
+        )
+    )
     total = 4 * width + 24
     parts.append(text(total / 2, head + height + 22, key, size=13, colour=GREY))
     return page(total, head + height + 38, parts)

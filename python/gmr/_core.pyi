@@ -447,8 +447,8 @@ def configure(
     after: Forest,
     offsets: NDArray[np.float64],
     translated: NDArray[np.int32],
-    rotations: NDArray[np.float64],
-    translations: NDArray[np.float64],
+    frames: tuple[NDArray[np.float64], NDArray[np.float64]]
+    | tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.uint8], NDArray[np.int32], bool],
     threads: int = 1,
     slots: NDArray[np.int32] | None = None,
     joints: NDArray[np.int32] | None = None,
@@ -461,8 +461,8 @@ def configure(
         after: the one wanted; of the same skeleton at home.
         offsets: (J, 3) in ``before``.
         translated: (T,) in ``before``.
-        rotations: (F, S, 4).
-        translations: (F, T, 3).
+        frames: rotations (F, S, 4) and translations (F, T, 3); or rows (F, C) and what their columns are, as
+            :func:`forward_kinematics_euler` takes them.
         threads: 0 means all cores; the bits are the same for every number.
         slots: (P,) those of ``after`` whose rotations are wanted; None: all.
         joints: those whose translations are wanted, as far as they are translated; None: all.
@@ -474,23 +474,6 @@ def configure(
     Raises:
         ValueError: shapes do not fit, or the two are of different skeletons.
     """
-
-def configure_euler(
-    before: Forest,
-    after: Forest,
-    offsets: NDArray[np.float64],
-    translated: NDArray[np.int32],
-    rows: NDArray[np.float64],
-    rotation_columns: NDArray[np.int32],
-    rotation_axes: NDArray[np.uint8],
-    translation_columns: NDArray[np.int32],
-    adds_offset: bool,
-    threads: int = 1,
-    slots: NDArray[np.int32] | None = None,
-    joints: NDArray[np.int32] | None = None,
-    /,
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64]]:
-    """As :func:`configure`, from rows (F, C) as :func:`forward_kinematics_euler` takes them."""
 
 # --- trial ---
 

@@ -24,7 +24,7 @@ from gmr.skeleton import End, Skeleton
 if TYPE_CHECKING:
     from gmr.motion import Motion
 
-__all__ = ["dof_rows_of"]
+__all__ = ["dof_rows_of", "own_turns", "with_bones_of"]
 
 _FREE: Final = ("rx", "ry", "rz")
 _ORDER: Final = ("TX", "TY", "TZ", "RX", "RY", "RZ")
@@ -51,8 +51,8 @@ def dof_rows_of(motion: Motion) -> DofRows:
         return motion.source
     pose = motion.pose
     acclaim = pose.acclaim
-    if acclaim is not None and _is_its(acclaim, motion.skeleton):
-        return _with_bones_of(acclaim, pose)
+    if acclaim is not None and _is_its(acclaim, motion.skeleton) and pose.translated.tolist() == [0]:
+        return with_bones_of(acclaim, pose)
     return _anew(motion, pose)
 
 
@@ -67,8 +67,9 @@ def _is_its(acclaim: Acclaim, skeleton: Skeleton) -> bool:
     )
 
 
-def _with_bones_of(acclaim: Acclaim, pose: Pose) -> DofRows:
-    """The pose with the bones of its ASF, freed where their degrees of freedom do not suffice."""
+def with_bones_of(acclaim: Acclaim, pose: Pose) -> DofRows:
+    """A pose that moves but the root, with the bones of its ASF; those are given three degrees of freedom,
+    without limits, that turn as theirs cannot say. Angles are in degrees."""
     values = _values(acclaim, pose.rotations, pose.translations[:, 0])
     missed = multiply(conjugate(_rotations(acclaim, values)), pose.rotations)
     off = 2 * np.arctan2(np.linalg.norm(missed[..., :3], axis=-1), np.abs(missed[..., 3]))
@@ -97,14 +98,14 @@ def _rotations(acclaim: Acclaim, values: NDArray[np.float64]) -> NDArray[np.floa
 def _values(
     acclaim: Acclaim, rotations: NDArray[np.float64], places: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """(F, C) values in degrees of (F, S, 4) rotations, ``A = C^-1 R C``, and (F, 3) places of the root."""
+    """(F, C) values in degrees of (F, S, 4) rotations and (F, 3) places of the root."""
     values = np.zeros((len(rotations), acclaim.column_count))
     for axis, column in enumerate(acclaim.translation_columns):
         if column >= 0:
             values[:, column] = places[:, axis] - acclaim.root.position[axis]
     if not len(values):
         return values
-    own = multiply(conjugate(acclaim.frames), multiply(rotations, acclaim.frames))
+    own = own_turns(acclaim, rotations)
     columns, axes = acclaim.rotation_columns, acclaim.rotation_axes
     counts = (columns >= 0).sum(axis=1)
     whole = np.flatnonzero(counts == 3)
@@ -118,6 +119,11 @@ def _values(
         angles = fewer_angles(own[:, slot], axes[slot, :count].tolist())
         values[:, columns[slot, :count]] = np.degrees(angles)
     return values
+
+
+def own_turns(acclaim: Acclaim, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(F, S, 4) rotations about each bone's own axes, ``A = C^-1 R C``."""
+    return multiply(conjugate(acclaim.frames), multiply(rotations, acclaim.frames))
 
 
 def _anew(motion: Motion, pose: Pose) -> DofRows:

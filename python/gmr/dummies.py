@@ -21,9 +21,10 @@ from gmr import _core
 from gmr.arrays import read_only
 from gmr.channels import ChannelLayout
 from gmr.euler import rotations_of_rows, translations_of_rows
-from gmr.forest import THREADING_PAYS, changed_at_home
+from gmr.forest import changed_at_home
 from gmr.frames import Pose, Rows
 from gmr.skeleton import End, Skeleton
+from gmr.threads import threads_for
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
@@ -92,8 +93,12 @@ def find_dummies(motion: Motion) -> tuple[int, ...]:
     )
 
 
-def drop_dummies(motion: Motion) -> Motion:
+def drop_dummies(motion: Motion, *, threads: int | None = None) -> Motion:
     """The motion without its dummy joints; all that stay keep their world positions and bone rotations.
+
+    Args:
+        motion: any, in any configuration.
+        threads: 0: all cores; None: all cores for long motions. The bits do not depend on it.
 
     Returns:
         A motion that remembers what was removed (:func:`restore_dummies`); the same motion where it has no
@@ -105,11 +110,11 @@ def drop_dummies(motion: Motion) -> Motion:
     if motion.skeleton.home is not None:
         kept = np.setdiff1d(np.arange(motion.skeleton.joint_count), dummies)
         places = _renumbering(motion.skeleton.joint_count, kept)
-        return changed_at_home(motion, lambda motion: _without(motion, dummies), places)
-    return _without(motion, dummies)
+        return changed_at_home(motion, lambda one: _without(one, dummies, threads), places, threads=threads)
+    return _without(motion, dummies, threads)
 
 
-def _without(motion: Motion, dummies: tuple[int, ...]) -> Motion:
+def _without(motion: Motion, dummies: tuple[int, ...], threads: int | None) -> Motion:
     """The motion, at home, without these dummies."""
     gone = set(dummies)
     skeleton = motion.skeleton
@@ -125,7 +130,7 @@ def _without(motion: Motion, dummies: tuple[int, ...]) -> Motion:
         for child in children:
             parents[child] = parents[dummy]
             slots[child] = slots[child] if slots[child] >= 0 else above
-    _turn(rotations, turned, by)
+    _turn(rotations, turned, by, threads)
     kept = np.setdiff1d(np.arange(skeleton.joint_count), dummies)
     moved = np.flatnonzero(np.isin(motion.translated, kept))
     return replace(
@@ -147,8 +152,12 @@ def _without(motion: Motion, dummies: tuple[int, ...]) -> Motion:
     )
 
 
-def restore_dummies(motion: Motion) -> Motion:
+def restore_dummies(motion: Motion, *, threads: int | None = None) -> Motion:
     """The motion with the joints that :func:`drop_dummies` removed, where they were, turning as they did.
+
+    Args:
+        motion: any, in any configuration.
+        threads: 0: all cores; None: all cores for long motions. The bits do not depend on it.
 
     Returns:
         A motion on the skeleton that it had before, with the values that were read as long as frames were
@@ -159,7 +168,9 @@ def restore_dummies(motion: Motion) -> Motion:
         return motion
     if motion.skeleton.home is not None:
         places = np.setdiff1d(np.arange(record.skeleton.joint_count), record.dummies)
-        return changed_at_home(motion, restore_dummies, places)
+        return changed_at_home(
+            motion, lambda one: restore_dummies(one, threads=threads), places, threads=threads
+        )
     if record.rows is not None:
         return replace(motion, skeleton=record.skeleton, source=record.rows, dropped=record.before)
     skeleton, pose = record.skeleton, motion.pose
@@ -172,7 +183,7 @@ def restore_dummies(motion: Motion) -> Motion:
             below = sorted({int(skeleton.slots[child]) for child in skeleton.children[dummy]} - {-1})
             turned += below
             by += [above] * len(below)
-    _turn(rotations, turned, by, back=True)
+    _turn(rotations, turned, by, threads, back=True)
     kept = np.setdiff1d(np.arange(skeleton.joint_count), record.dummies)
     # A joint that is at rest need not be among those that are translated now; a dummy has no length at all.
     rest = np.where(
@@ -197,11 +208,16 @@ def _numbers(motion: Motion) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def _turn(
-    rotations: NDArray[np.float64], slots: Sequence[int], by: Sequence[int], *, back: bool = False
+    rotations: NDArray[np.float64],
+    slots: Sequence[int],
+    by: Sequence[int],
+    threads: int | None,
+    *,
+    back: bool = False,
 ) -> None:
     """Turns slots by others, in place and one after the other: ``R_slot <- R_by R_slot``; or back."""
-    threads = 0 if rotations.size > 4 * THREADING_PAYS else 1
-    _core.turn_slots(rotations, np.array(slots, np.int32), np.array(by, np.int32), back, threads)
+    total = threads_for(rotations.size // 4, threads)
+    _core.turn_slots(rotations, np.array(slots, np.int32), np.array(by, np.int32), back, total)
 
 
 def _renumbering(count: int, kept: NDArray[np.intp]) -> NDArray[np.int32]:

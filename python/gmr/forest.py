@@ -22,12 +22,12 @@ from gmr.arrays import read_only
 from gmr.errors import SkeletonError
 from gmr.frames import Pose, Rows
 from gmr.skeleton import Skeleton
+from gmr.threads import threads_for
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
 
 __all__ = [
-    "THREADING_PAYS",
     "arranged",
     "carried",
     "changed_at_home",
@@ -45,11 +45,8 @@ Joint = str | int | np.integer[Any]
 _STILL = 1e-11
 """Share of the motion's reach by which a bone that was cut may miss its offset by rounding alone."""
 
-THREADING_PAYS = 1_000_000
-"""Joint positions above which sharing the work among threads wins over starting them."""
 
-
-def with_roots(motion: Motion, roots: Iterable[Joint]) -> Motion:
+def with_roots(motion: Motion, roots: Iterable[Joint], *, threads: int | None = None) -> Motion:
     """The same motion with just these roots: every other bone is whole.
 
     Where the joint at which a tree begins at home is not among them, the tree hangs on the first of them, in
@@ -58,16 +55,19 @@ def with_roots(motion: Motion, roots: Iterable[Joint]) -> Motion:
     Args:
         motion: any, in any configuration.
         roots: names or indices, in any order.
+        threads: 0: all cores; None: all cores for long motions. The bits do not depend on it.
 
     Raises:
         SkeletonError: a joint does not exist or is named twice, or a tree would have no root.
     """
     names = motion.skeleton.names
     wanted = motion.skeleton.indices(roots).tolist()
-    return _moved(motion, lambda forest: forest.with_roots(wanted, names))
+    return _moved(motion, lambda forest: forest.with_roots(wanted, names), threads)
 
 
-def shift_root(motion: Motion, joint: Joint, root: Joint | None = None) -> Motion:
+def shift_root(
+    motion: Motion, joint: Joint, root: Joint | None = None, *, threads: int | None = None
+) -> Motion:
     """The same motion with ``joint`` as the root of its tree, which is turned over; other trees stay.
 
     It is its own inverse: shifting back to the old root gives back every number, to rounding.
@@ -76,6 +76,7 @@ def shift_root(motion: Motion, joint: Joint, root: Joint | None = None) -> Motio
         motion: any, in any configuration.
         joint: name or index.
         root: the root that is to give up its place, as a check; that of the joint's tree by default.
+        threads: 0: all cores; None: all cores for long motions. The bits do not depend on it.
 
     Raises:
         SkeletonError: there is no such joint, or it does not hang below ``root``.
@@ -88,41 +89,51 @@ def shift_root(motion: Motion, joint: Joint, root: Joint | None = None) -> Motio
             f"'{names[index]}' does not hang below the root '{stated}' but below '{names[old]}'; a root "
             "moves inside its tree. Join the trees first, or choose all roots at once: with_roots"
         )
-    return _moved(motion, lambda forest: forest.shift_root(index, names))
+    return _moved(motion, lambda forest: forest.shift_root(index, names), threads)
 
 
-def split(motion: Motion, joint: Joint) -> Motion:
+def split(motion: Motion, joint: Joint, *, threads: int | None = None) -> Motion:
     """The same motion with ``joint`` as a further root; the bone above it is cut and remembered.
+
+    Args:
+        motion: any, in any configuration.
+        joint: name or index.
+        threads: 0: all cores; None: all cores for long motions. The bits do not depend on it.
 
     Raises:
         SkeletonError: there is no such joint, or it is a root already.
     """
     names, index = motion.skeleton.names, motion.skeleton.index(joint)
-    return _moved(motion, lambda forest: forest.split(index, names))
+    return _moved(motion, lambda forest: forest.split(index, names), threads)
 
 
-def join(motion: Motion, root: Joint) -> Motion:
+def join(motion: Motion, root: Joint, *, threads: int | None = None) -> Motion:
     """The same motion without this root: its tree hangs on the joint that it was cut from.
 
     A tree that was turned over since is turned back first. Where somebody edited the motion in between, so
     that the bone is not what it was, the joint is translated in every frame; else it has its old offset.
+
+    Args:
+        motion: any, in any configuration.
+        root: name or index.
+        threads: 0: all cores; None: all cores for long motions. The bits do not depend on it.
 
     Raises:
         SkeletonError: there is no such joint, it is no root, it is the last root, or its tree was cut from
             nothing.
     """
     names, index = motion.skeleton.names, motion.skeleton.index(root)
-    return _moved(motion, lambda forest: forest.join(index, names))
+    return _moved(motion, lambda forest: forest.join(index, names), threads)
 
 
-def home(motion: Motion) -> Motion:
+def home(motion: Motion, *, threads: int | None = None) -> Motion:
     """The same motion in the configuration that it had before any root was moved.
 
     Rows that were read come back as they were.
     """
     if motion.skeleton.home is None:
         return motion
-    return carried(motion, motion.skeleton.home)
+    return carried(motion, motion.skeleton.home, threads=threads)
 
 
 def arranged(skeleton: Skeleton, forest: _core.Forest) -> Skeleton:
@@ -157,14 +168,15 @@ def configuration(skeleton: Skeleton, cut: Iterable[int], roots: Iterable[int]) 
     return arranged(at_home, _core.Forest(at_home.topology, parents))
 
 
-def carried(motion: Motion, skeleton: Skeleton) -> Motion:
+def carried(motion: Motion, skeleton: Skeleton, *, threads: int | None = None) -> Motion:
     """The same motion on its skeleton in another configuration, ``skeleton``."""
     source = motion.source
+    total = threads_for(motion.frame_count * skeleton.joint_count, threads)
     if motion.skeleton == skeleton:
         return motion
     if isinstance(source, Pose) and source.rows is not None and skeleton.home is None:
         return replace(motion, skeleton=skeleton, source=source.rows)
-    rotations, translated, translations = configured(motion, skeleton)
+    rotations, translated, translations = configured(motion, skeleton, threads=total)
     rows = source.rows if isinstance(source, Pose) else source
     pose = Pose(
         read_only(rotations), translated, read_only(translations), source.layout, rows, motion.acclaim
@@ -177,6 +189,8 @@ def configured(
     skeleton: Skeleton,
     slots: NDArray[np.int32] | None = None,
     joints: NDArray[np.int32] | None = None,
+    *,
+    threads: int | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64]]:
     """The numbers of a motion as another configuration of its skeleton has them.
 
@@ -185,16 +199,21 @@ def configured(
         skeleton: the configuration.
         slots: (P,) the slots of ``skeleton`` whose rotations are wanted; all by default.
         joints: the joints whose translations are wanted, as far as they are translated; all by default.
+        threads: 0: all cores; None: all cores for long motions. The bits do not depend on it.
 
     Returns:
         Rotations (F, P, 4); the joints that are translated (U,); their translations (F, U, 3).
     """
-    rotations, translated, translations = _configured(motion, skeleton, slots, joints)
+    rotations, translated, translations = _configured(motion, skeleton, slots, joints, threads)
     return rotations, *_without_still_bones(motion, skeleton, translated, translations)
 
 
 def changed_at_home(
-    motion: Motion, change: Callable[[Motion], Motion], places: NDArray[np.integer[Any]]
+    motion: Motion,
+    change: Callable[[Motion], Motion],
+    places: NDArray[np.integer[Any]],
+    *,
+    threads: int | None = None,
 ) -> Motion:
     """``change`` of the motion at home, brought back to the configuration that the motion is in.
 
@@ -202,10 +221,11 @@ def changed_at_home(
         motion: not at home.
         change: what is to be done to it there.
         places: (J,) where the change puts each joint; -1: it is removed, and its children hang on its parent.
+        threads: 0: all cores; None: all cores for long motions. The bits do not depend on it.
     """
     skeleton = motion.skeleton
     at_home = cast(Skeleton, skeleton.home)
-    changed = change(home(motion))
+    changed = change(home(motion, threads=threads))
     cut = set()
     waiting = np.flatnonzero(skeleton.links >= 0).tolist()
     for joint in waiting:  # grows while it is walked
@@ -214,16 +234,16 @@ def changed_at_home(
         else:
             waiting.extend(at_home.children[joint])
     roots = [int(places[root]) for root in skeleton.roots if places[root] >= 0]
-    return carried(changed, configuration(changed.skeleton, cut, roots))
+    return carried(changed, configuration(changed.skeleton, cut, roots), threads=threads)
 
 
-def _moved(motion: Motion, change: Callable[[_core.Forest], _core.Forest]) -> Motion:
+def _moved(motion: Motion, change: Callable[[_core.Forest], _core.Forest], threads: int | None) -> Motion:
     """The motion in the configuration that ``change`` makes of its own."""
     try:
         forest = change(motion.skeleton.forest)
     except ValueError as error:
         raise SkeletonError(str(error)) from None
-    return carried(motion, arranged(motion.skeleton, forest))
+    return carried(motion, arranged(motion.skeleton, forest), threads=threads)
 
 
 def _configured(
@@ -231,21 +251,22 @@ def _configured(
     skeleton: Skeleton,
     slots: NDArray[np.int32] | None,
     joints: NDArray[np.int32] | None,
+    threads: int | None,
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64]]:
     """Rotations, the joints that may be translated, and their translations, as ``skeleton`` arranges them."""
     before, after, offsets = motion.skeleton.forest, skeleton.forest, motion.skeleton.offsets
-    threads = 0 if motion.frame_count * skeleton.joint_count > THREADING_PAYS else 1
+    total = threads_for(motion.frame_count * skeleton.joint_count, threads)
     source = motion.source
     if isinstance(source, Rows) and "pose" not in motion.__dict__:
         layout = source.layout
-        return _core.configure_euler(
-            before, after, offsets, layout.translated, source.values, layout.rotation_columns,
-            layout.rotation_axes, layout.translation_columns, layout.adds_offset, threads, slots, joints,
+        rows = (
+            source.values, layout.rotation_columns, layout.rotation_axes, layout.translation_columns,
+            layout.adds_offset,
         )  # fmt: skip
+        return _core.configure(before, after, offsets, layout.translated, rows, total, slots, joints)
     pose = motion.pose
-    return _core.configure(
-        before, after, offsets, pose.translated, pose.rotations, pose.translations, threads, slots, joints
-    )
+    quaternions = pose.rotations, pose.translations
+    return _core.configure(before, after, offsets, pose.translated, quaternions, total, slots, joints)
 
 
 def _without_still_bones(
@@ -255,9 +276,9 @@ def _without_still_bones(
 
     A joint that has position channels at home stays translated all the same.
     """
-    was_cut = np.asarray(motion.skeleton.links) >= 0
-    whole = [k for k, joint in enumerate(translated.tolist()) if skeleton.parents[joint] >= 0]
-    mended = [k for k in whole if was_cut[skeleton.forest.bones[translated[k]]]]
+    bones = np.asarray(skeleton.forest.bones)[translated]
+    was_cut = np.asarray(motion.skeleton.links)[bones] >= 0
+    mended = np.flatnonzero(was_cut & (skeleton.parents[translated] >= 0)).tolist()
     if not mended or not len(translations):
         return translated, translations
     reach = max(np.abs(translations).max(), np.abs(skeleton.offsets).max())
@@ -268,7 +289,7 @@ def _without_still_bones(
         offset = skeleton.offsets[translated[k]]
         as_offset = np.abs(translations[:, k] - offset).max(axis=0) <= _STILL * reach
         translations[:, k, as_offset] = offset[as_offset]
-        if as_offset.all() and int(skeleton.forest.bones[translated[k]]) not in moving:
+        if as_offset.all() and int(bones[k]) not in moving:
             still.append(k)
     kept = np.setdiff1d(np.arange(len(translated)), still)
     return translated[kept], translations.take(kept, axis=1) if still else translations

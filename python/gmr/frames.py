@@ -139,9 +139,10 @@ def check_fit(skeleton: Skeleton, source: Rows | DofRows | Pose) -> None:
     if slots != skeleton.slot_count:
         raise SkeletonError(f"rotations for {slots} slots, but the skeleton has {skeleton.slot_count}")
     translated = source.translated.tolist()
-    if len(set(translated)) < len(translated) or not set(translated) <= set(range(skeleton.joint_count)):
+    moving = set(translated)
+    if len(moving) < len(translated) or not moving <= set(range(skeleton.joint_count)):
         raise SkeletonError(f"translated joints {translated} must be distinct joints of the skeleton")
-    lacking = [skeleton.names[root] for root in skeleton.roots if root not in translated]
+    lacking = [skeleton.names[root] for root in skeleton.roots if root not in moving]
     if lacking:
         raise SkeletonError(f"root '{lacking[0]}' has no translation; every root needs one")
 

@@ -9,15 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from gmr import _core
 from gmr.errors import GmrError, SkeletonError
-from gmr.threads import thread_count
+from gmr.threads import threads_for
 
 __all__ = ["forward_kinematics"]
 
 FloatArray = NDArray[np.float32] | NDArray[np.float64]
 RotationOrder = Literal["post", "pre"]
-
-_THREADING_PAYS = 1_000_000
-"""Joint positions above which sharing the work among threads wins over starting them."""
 
 
 @overload
@@ -118,8 +115,7 @@ def forward_kinematics(
     places = _room(out, (*lead, len(wanted), 3), turns.dtype)
     frames = int(np.prod(lead))
     turned = np.empty((frames, joint_count, 4), turns.dtype) if world_rotations else None
-    by_default = 0 if frames * joint_count > _THREADING_PAYS else 1
-    thread_total = thread_count(threads, by_default)
+    thread_total = threads_for(frames * joint_count, threads)
     try:
         _core.forward_kinematics(
             topology, turns.reshape(frames, joint_count, 4), moving, moves.reshape(frames, len(moving), 3),

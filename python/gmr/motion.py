@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from gmr.channels import ChannelLayout
+from gmr.clip import Clip, check_frame_time
 from gmr.dof_rows import DofRows
 from gmr.errors import GmrError
 from gmr.frames import Pose, Rows, check_fit
@@ -35,7 +36,7 @@ FloatArray = NDArray[Any]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Motion:
+class Motion(Clip):
     """One continuous recording on a skeleton; immutable. Operations return a new one and share what they
     keep.
 
@@ -57,8 +58,7 @@ class Motion:
     gives None here, or what was removed from those."""
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.frame_time) and self.frame_time >= 0):
-            raise GmrError(f"a frame cannot last {self.frame_time} seconds; give 0 or more")
+        check_frame_time(self.frame_time)
         if self.unit is not None and not (math.isfinite(self.unit) and self.unit > 0):
             raise GmrError(f"a file unit cannot be {self.unit} metres; give more than 0, or None if unknown")
         check_fit(self.skeleton, self.source)
@@ -120,19 +120,6 @@ class Motion:
     def frame_count(self) -> int:
         """F."""
         return len(self.source)
-
-    def __len__(self) -> int:
-        return self.frame_count
-
-    @property
-    def fps(self) -> float:
-        """Frames a second; infinite where the frame time is 0."""
-        return 1 / self.frame_time if self.frame_time else math.inf
-
-    @property
-    def duration(self) -> float:
-        """Seconds, each frame lasting one frame time."""
-        return self.frame_count * self.frame_time
 
     @property
     def roots(self) -> tuple[str, ...]:
@@ -250,36 +237,36 @@ class Motion:
             cut.__dict__["pose"] = self.pose.frames(part)
         return cut
 
-    def with_roots(self, roots: Iterable[Joint]) -> Motion:
+    def with_roots(self, roots: Iterable[Joint], *, threads: int | None = None) -> Motion:
         """The same motion with just these roots; see :func:`gmr.forest.with_roots`."""
         from gmr.forest import with_roots
 
-        return with_roots(self, roots)
+        return with_roots(self, roots, threads=threads)
 
-    def shift_root(self, joint: Joint, root: Joint | None = None) -> Motion:
+    def shift_root(self, joint: Joint, root: Joint | None = None, *, threads: int | None = None) -> Motion:
         """The same motion with ``joint`` as the root of its tree; see :func:`gmr.forest.shift_root`."""
         from gmr.forest import shift_root
 
-        return shift_root(self, joint, root)
+        return shift_root(self, joint, root, threads=threads)
 
-    def split(self, joint: Joint) -> Motion:
+    def split(self, joint: Joint, *, threads: int | None = None) -> Motion:
         """The same motion with ``joint`` as a further root; see :func:`gmr.forest.split`."""
         from gmr.forest import split
 
-        return split(self, joint)
+        return split(self, joint, threads=threads)
 
-    def join(self, root: Joint) -> Motion:
+    def join(self, root: Joint, *, threads: int | None = None) -> Motion:
         """The same motion without this root, its tree hanging on its old parent; see
         :func:`gmr.forest.join`."""
         from gmr.forest import join
 
-        return join(self, root)
+        return join(self, root, threads=threads)
 
-    def select(self, joints: Iterable[Joint]) -> Motion:
+    def select(self, joints: Iterable[Joint], *, threads: int | None = None) -> Motion:
         """The motion of some of the joints alone; see :func:`gmr.partial.select`."""
         from gmr.partial import select
 
-        return select(self, joints)
+        return select(self, joints, threads=threads)
 
     def resample(self, fps: float) -> Motion:
         """The motion at another rate; see :func:`gmr.resample.resample`."""
@@ -309,17 +296,17 @@ class Motion:
         """The same motion under another name."""
         return replace(self, name=name)
 
-    def drop_dummies(self) -> Motion:
+    def drop_dummies(self, *, threads: int | None = None) -> Motion:
         """The motion without its dummy joints, all others in place; see :func:`gmr.dummies.drop_dummies`."""
         from gmr.dummies import drop_dummies
 
-        return drop_dummies(self)
+        return drop_dummies(self, threads=threads)
 
-    def restore_dummies(self) -> Motion:
+    def restore_dummies(self, *, threads: int | None = None) -> Motion:
         """The motion with the dropped dummies back; see :func:`gmr.dummies.restore_dummies`."""
         from gmr.dummies import restore_dummies
 
-        return restore_dummies(self)
+        return restore_dummies(self, threads=threads)
 
     def to_post_rotation(self) -> Motion:
         """The motion as rows of channels can say it; see :func:`gmr.post_rotation.to_post_rotation`."""

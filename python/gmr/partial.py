@@ -34,7 +34,7 @@ def below(skeleton: Skeleton, joint: Joint) -> tuple[int, ...]:
     return tuple(sorted(found))
 
 
-def select(motion: Motion, joints: Iterable[Joint]) -> Motion:
+def select(motion: Motion, joints: Iterable[Joint], *, threads: int | None = None) -> Motion:
     """The motion of some of the joints alone: each where it was, its bone turned as it was.
 
     A joint whose parent at home is not among them is the beginning of a tree of its own, placed in the world
@@ -43,6 +43,7 @@ def select(motion: Motion, joints: Iterable[Joint]) -> Motion:
     Args:
         motion: any, in any configuration; what is left of it stays.
         joints: names or indices, in any order.
+        threads: 0: all cores; None: all cores for long motions. The bits do not depend on it.
 
     Raises:
         SkeletonError: a joint does not exist, or none is given.
@@ -53,21 +54,21 @@ def select(motion: Motion, joints: Iterable[Joint]) -> Motion:
         raise SkeletonError("no joint is selected, and a motion needs one; name those to keep")
     at_home = skeleton if skeleton.home is None else skeleton.home
     above = at_home.parents
-    begins = [joint for joint in kept.tolist() if above[joint] < 0 or above[joint] not in kept]
-    freed = np.flatnonzero(
-        (above >= 0) & np.isin(above, kept, invert=True) & np.isin(np.arange(len(above)), kept)
-    )
-    part = _only(motion, configuration(skeleton, freed.tolist(), ()), kept)
+    is_kept = np.zeros(skeleton.joint_count, bool)
+    is_kept[kept] = True
+    begins = is_kept & ((above < 0) | ~is_kept[above])
+    freed = np.flatnonzero(begins & (above >= 0))
+    part = _only(motion, configuration(skeleton, freed.tolist(), ()), kept, threads)
 
     places = np.full(skeleton.joint_count, -1)
     places[kept] = np.arange(len(kept))
-    cut = [int(places[joint]) for joint in np.flatnonzero(skeleton.links >= 0) if joint in kept]
+    cut = [int(places[joint]) for joint in np.flatnonzero((skeleton.links >= 0) & is_kept)]
     cut = [joint for joint in cut if part.skeleton.parents[joint] >= 0]
-    roots = [int(places[root]) for root in skeleton.roots if root in kept and root not in begins]
-    return carried(part, configuration(part.skeleton, cut, roots))
+    roots = [int(places[root]) for root in skeleton.roots if is_kept[root] and not begins[root]]
+    return carried(part, configuration(part.skeleton, cut, roots), threads=threads)
 
 
-def _only(motion: Motion, whole: Skeleton, kept: NDArray[np.int32]) -> Motion:
+def _only(motion: Motion, whole: Skeleton, kept: NDArray[np.int32], threads: int | None) -> Motion:
     """The kept joints, none of which hangs on one that is not kept in the configuration ``whole``."""
     if whole.home is None and isinstance(motion.source, Pose) and motion.source.rows is not None:
         motion = carried(motion, whole)
@@ -82,7 +83,7 @@ def _only(motion: Motion, whole: Skeleton, kept: NDArray[np.int32]) -> Motion:
         slot_count=len(used),
         ends=whole.ends[kept],
     )
-    rotations, translated, translations = configured(motion, whole, used, kept)
+    rotations, translated, translations = configured(motion, whole, used, kept, threads=threads)
     source = Pose(read_only(rotations), joints[translated], read_only(translations))
     return replace(motion, skeleton=part, source=source, dropped=None)
 

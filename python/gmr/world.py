@@ -11,7 +11,7 @@ from numpy.typing import DTypeLike, NDArray
 from gmr import _core
 from gmr.errors import GmrError
 from gmr.frames import Rows
-from gmr.threads import thread_count
+from gmr.threads import threads_for
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
@@ -23,9 +23,6 @@ FloatArray = NDArray[Any]
 
 _FEW = 0.75
 """Share of the slots up to which rotations that move something are kept apart from the others."""
-
-_THREADING_PAYS = 1_000_000
-"""Joint positions above which sharing the work among threads wins over starting them."""
 
 
 def motion_positions(
@@ -66,8 +63,8 @@ def _forward_kinematics(
 ) -> None:
     """Runs the kernel that fits what the motion holds: Euler rows as read, or quaternions."""
     skeleton, source = motion.skeleton, motion.source
-    by_default = 0 if motion.frame_count * skeleton.joint_count > _THREADING_PAYS else 1
-    wanted = (joints, slots, positions, rotations, thread_count(threads, by_default))
+    thread_total = threads_for(motion.frame_count * skeleton.joint_count, threads)
+    wanted = (joints, slots, positions, rotations, thread_total)
     if isinstance(source, Rows):
         layout = source.layout
         _core.forward_kinematics_euler(

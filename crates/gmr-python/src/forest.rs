@@ -2,15 +2,11 @@
 
 use gmr_core::forest::{self, Configure, Configured, Forest, ForestError};
 use gmr_core::kinematics::Pose;
-use gmr_core::rotation::EulerColumns;
-use numpy::{
-    PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
-    PyUntypedArrayMethods,
-};
+use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::kinematics::{PyTopology, input, to_vec, triples, value_error};
+use crate::kinematics::{EulerRows, PyTopology, input, to_vec, value_error};
 use crate::rotation::zeros;
 
 /// A skeleton in one of its configurations.
@@ -86,10 +82,24 @@ fn named(result: Result<Forest, ForestError>, names: &Bound<'_, PyAny>) -> PyRes
     result.map(|inner| PyForest { inner }).map_err(|error| PyValueError::new_err(error.describe(name)))
 }
 
-/// Rotations (F, S, 4), the joints translated (U,) and their translations (F, U, 3) in `to`, of frames in `from` that
-/// hold quaternions; of some of its slots and joints alone where they are given.
+/// Frames as they come from Python: quaternions (F, S, 4) and translations (F, T, 3); or rows (F, C) as files hold
+/// them, the columns and axes of each rotation, the columns of each translation, and whether these add to offsets.
+#[derive(FromPyObject)]
+enum Frames<'py> {
+    Quaternions(Bound<'py, PyAny>, Bound<'py, PyAny>),
+    Rows(
+        PyReadonlyArray2<'py, f64>,
+        PyReadonlyArray2<'py, i32>,
+        PyReadonlyArray2<'py, u8>,
+        PyReadonlyArray2<'py, i32>,
+        bool,
+    ),
+}
+
+/// Rotations (F, S, 4), the joints translated (U,) and their translations (F, U, 3) in `to`, of frames in `from`; of
+/// some of its slots and joints alone where they are given.
 #[pyfunction]
-#[pyo3(signature = (from, to, offsets, translated, rotations, translations, threads=1, slots=None, joints=None))]
+#[pyo3(signature = (from, to, offsets, translated, frames, threads=1, slots=None, joints=None))]
 #[allow(clippy::too_many_arguments)]
 fn configure<'py>(
     py: Python<'py>,
@@ -97,50 +107,27 @@ fn configure<'py>(
     to: &PyForest,
     offsets: PyReadonlyArray2<'py, f64>,
     translated: PyReadonlyArray1<'py, i32>,
-    rotations: PyReadonlyArray3<'py, f64>,
-    translations: PyReadonlyArray3<'py, f64>,
+    frames: Frames<'py>,
     threads: usize,
     slots: Option<PyReadonlyArray1<'py, i32>>,
     joints: Option<PyReadonlyArray1<'py, i32>>,
 ) -> PyResult<Answer<'py>> {
-    let rotations = input::<f64>(rotations.as_any(), "rotations", 4)?;
-    let translations = input::<f64>(translations.as_any(), "translations", 3)?;
-    let frame_count = rotations.shape()[0];
-    let (rotations, translations) = (rotations.as_slice()?, translations.as_slice()?);
-    let pose = Pose::Quaternions { rotations, normalize: false, translations };
-    carried(py, from, to, &offsets, &to_vec(&translated), pose, frame_count, threads, [slots, joints])
-}
-
-/// As `configure`, of frames that are rows (F, C) as files hold them.
-#[pyfunction]
-#[pyo3(signature = (from, to, offsets, translated, rows, rotation_columns, rotation_axes, translation_columns,
-    adds_offset, threads=1, slots=None, joints=None))]
-#[allow(clippy::too_many_arguments)]
-fn configure_euler<'py>(
-    py: Python<'py>,
-    from: &PyForest,
-    to: &PyForest,
-    offsets: PyReadonlyArray2<'py, f64>,
-    translated: PyReadonlyArray1<'py, i32>,
-    rows: PyReadonlyArray2<'py, f64>,
-    rotation_columns: PyReadonlyArray2<'py, i32>,
-    rotation_axes: PyReadonlyArray2<'py, u8>,
-    translation_columns: PyReadonlyArray2<'py, i32>,
-    adds_offset: bool,
-    threads: usize,
-    slots: Option<PyReadonlyArray1<'py, i32>>,
-    joints: Option<PyReadonlyArray1<'py, i32>>,
-) -> PyResult<Answer<'py>> {
-    let [columns, places] = [
-        triples(&rotation_columns, "rotation_columns")?,
-        triples(&translation_columns, "translation_columns")?,
-    ];
-    let axes = triples(&rotation_axes, "rotation_axes")?;
-    let angles = EulerColumns { columns: &columns, axes: &axes };
-    let (frame_count, column_count) = (rows.shape()[0], rows.shape()[1]);
-    let rows = rows.as_slice()?;
-    let pose = Pose::Rows { rows, column_count, angles, translation_columns: &places, adds_offset };
-    carried(py, from, to, &offsets, &to_vec(&translated), pose, frame_count, threads, [slots, joints])
+    let run = |pose: Pose<'_, f64>, frame_count| {
+        carried(py, from, to, &offsets, &to_vec(&translated), pose, frame_count, threads, [slots, joints])
+    };
+    match frames {
+        Frames::Quaternions(rotations, translations) => {
+            let rotations = input::<f64>(&rotations, "rotations", 4)?;
+            let translations = input::<f64>(&translations, "translations", 3)?;
+            let frame_count = rotations.shape()[0];
+            let (rotations, translations) = (rotations.as_slice()?, translations.as_slice()?);
+            run(Pose::Quaternions { rotations, normalize: false, translations }, frame_count)
+        }
+        Frames::Rows(rows, columns, axes, places, adds_offset) => {
+            let rows = EulerRows::new(rows, &columns, &axes, &places, adds_offset)?;
+            run(rows.pose()?, rows.frame_count())
+        }
+    }
 }
 
 type Answer<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray3<f64>>);
@@ -176,6 +163,5 @@ fn carried<'py>(
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyForest>()?;
-    module.add_function(wrap_pyfunction!(configure, module)?)?;
-    module.add_function(wrap_pyfunction!(configure_euler, module)?)
+    module.add_function(wrap_pyfunction!(configure, module)?)
 }

@@ -184,22 +184,53 @@ fn forward_kinematics_euler<'py>(
         rotations_out,
         threads,
     };
-    let [columns, translation_columns] = [
-        triples(&rotation_columns, "rotation_columns")?,
-        triples(&translation_columns, "translation_columns")?,
-    ];
-    let axes = triples(&rotation_axes, "rotation_axes")?;
-    let angles = EulerColumns { columns: &columns, axes: &axes };
-    let (frame_count, column_count) = (rows.shape()[0], rows.shape()[1]);
-    let rows = rows.as_slice()?;
-    let translation_columns = &translation_columns[..];
+    let rows = EulerRows::new(rows, &rotation_columns, &rotation_axes, &translation_columns, adds_offset)?;
     let any_out = shared.positions_out.as_ref().or(shared.rotations_out.as_ref());
     if any_out.is_some_and(|out| out.cast::<PyArrayDyn<f32>>().is_ok()) {
-        let pose: Pose<'_, f32> = Pose::Rows { rows, column_count, angles, translation_columns, adds_offset };
-        return shared.run(py, pose, frame_count);
+        return shared.run::<f32>(py, rows.pose()?, rows.frame_count());
     }
-    let pose: Pose<'_, f64> = Pose::Rows { rows, column_count, angles, translation_columns, adds_offset };
-    shared.run(py, pose, frame_count)
+    shared.run::<f64>(py, rows.pose()?, rows.frame_count())
+}
+
+/// Rows (F, C) as files hold them, and what their columns are.
+pub(crate) struct EulerRows<'py> {
+    rows: PyReadonlyArray2<'py, f64>,
+    rotation_columns: Vec<[i32; 3]>,
+    rotation_axes: Vec<[u8; 3]>,
+    translation_columns: Vec<[i32; 3]>,
+    adds_offset: bool,
+}
+
+impl<'py> EulerRows<'py> {
+    pub(crate) fn new(
+        rows: PyReadonlyArray2<'py, f64>,
+        rotation_columns: &PyReadonlyArray2<'py, i32>,
+        rotation_axes: &PyReadonlyArray2<'py, u8>,
+        translation_columns: &PyReadonlyArray2<'py, i32>,
+        adds_offset: bool,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            rows,
+            rotation_columns: triples(rotation_columns, "rotation_columns")?,
+            rotation_axes: triples(rotation_axes, "rotation_axes")?,
+            translation_columns: triples(translation_columns, "translation_columns")?,
+            adds_offset,
+        })
+    }
+
+    pub(crate) fn frame_count(&self) -> usize {
+        self.rows.shape()[0]
+    }
+
+    pub(crate) fn pose<T>(&self) -> PyResult<Pose<'_, T>> {
+        Ok(Pose::Rows {
+            rows: self.rows.as_slice()?,
+            column_count: self.rows.shape()[1],
+            angles: EulerColumns { columns: &self.rotation_columns, axes: &self.rotation_axes },
+            translation_columns: &self.translation_columns,
+            adds_offset: self.adds_offset,
+        })
+    }
 }
 
 pub(crate) fn value_error(error: impl std::fmt::Display) -> PyErr {

@@ -10,7 +10,16 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
-__all__ = ["CONVENTIONS", "OPTIONAL", "REQUIRED", "ROLES", "roles_by_name", "side_and_part", "split_role"]
+__all__ = [
+    "CONVENTIONS",
+    "HANDS",
+    "OPTIONAL",
+    "REQUIRED",
+    "ROLES",
+    "roles_by_name",
+    "side_and_part",
+    "split_role",
+]
 
 Side = str
 """``"left"``, ``"right"`` or ``""``."""
@@ -60,7 +69,10 @@ _BONE_ENDS: _Words = {
 CONVENTIONS: tuple[_Words, ...] = (_BONE_STARTS, _BONE_ENDS)
 """Ways of naming, in the order in which they are tried; the body's shape decides whether one fits."""
 
-_VOCABULARY = frozenset(word for words in CONVENTIONS for listed in words.values() for word in listed)
+HANDS = ("hand", "wrist")
+"""Words for a hand, which is no role; the most telling first."""
+
+_VOCABULARY = frozenset((*HANDS, *(w for words in CONVENTIONS for listed in words.values() for w in listed)))
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 
 

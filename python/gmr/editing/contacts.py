@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.body.joints import find_joints
+from gmr.editing.roles import body_roles
 from gmr.editing.scene import Scene, scene_of
 from gmr.errors import DatasetError, GmrError, SkeletonError
 from gmr.motion import Motion
 from gmr.tpose import leading_rest_frames
 
-__all__ = ["Contact", "Contacts", "contacts", "foot_roles", "slide"]
+__all__ = ["Contact", "Contacts", "contacts", "slide"]
 
 Joint = str | int | np.integer[Any]
 Floats = NDArray[np.float64]
@@ -33,8 +33,6 @@ _RESTING = 0.1
 
 _STEP = 0.6
 """Seconds before and after a frame within which a foot that walks or runs has been on the ground."""
-
-_SAMPLES = 200
 
 
 @dataclass(frozen=True, order=True, slots=True)
@@ -102,7 +100,8 @@ def contacts(
     """When joints rest on the ground.
 
     Args:
-        motion: any; what a converter put before the recording has no contacts.
+        motion: any; there are no contacts in what a converter put before the recording, nor where the pose is
+            not known (NaN).
         joints: names or indices; by default the ball of each foot (the toe joint), or the ankle where the
             skeleton has no toes. See :mod:`gmr.body.joints`.
         height: metres above the joint's height on the ground: below the first a contact may begin, above the
@@ -153,18 +152,6 @@ def contacts(
     return Contacts(tuple(found), labels, motion.frame_count, scene)
 
 
-def foot_roles(motion: Motion, names: Mapping[str, str | int] | None = None) -> Mapping[str, int]:
-    """The joints of the body by role, at home.
-
-    Raises:
-        DatasetError: they are not found.
-    """
-    sampled = motion[leading_rest_frames(motion) :]
-    poses = sampled[:: max(1, sampled.frame_count // _SAMPLES)].positions(dtype=np.float64)
-    skeleton = motion.skeleton if motion.skeleton.home is None else motion.skeleton.home
-    return find_joints(skeleton, poses, names).roles
-
-
 def slide(places: Floats, up: Floats) -> float:
     """Length of the way that a joint goes along the ground, in the unit of its (F, 3) places."""
     steps = np.diff(places, axis=0)
@@ -175,7 +162,7 @@ def slide(places: Floats, up: Floats) -> float:
 def _feet(motion: Motion, names: Mapping[str, str | int] | None) -> list[int]:
     """The toe of each foot, or the foot."""
     try:
-        roles = foot_roles(motion, names)
+        roles = body_roles(motion, names)
     except DatasetError as error:
         raise DatasetError(f"no feet found: {error}") from None
     return [roles.get(f"{side}_toe", roles[f"{side}_foot"]) for side in ("left", "right")]

@@ -100,5 +100,5 @@ def smooth_above(values: Floats, width: int) -> Floats:
     windows = np.lib.stride_tricks.sliding_window_view
     greatest = windows(np.pad(values, 2 * half, mode="edge"), 2 * half + 1).max(axis=-1)
     weights = np.hanning(2 * half + 3)[1:-1]
-    found: Floats = windows(greatest, 2 * half + 1) @ (weights / weights.sum())
-    return np.maximum(found, values)
+    averaged = np.convolve(greatest, weights / weights.sum(), mode="valid")
+    return np.asarray(np.maximum(averaged, values), np.float64)

@@ -30,7 +30,7 @@ class Stretch:
 
     Args:
         joint: the end's name.
-        missed: (F,) file units.
+        missed: (F,) file units; NaN where the pose is not known.
         unit: of ``missed``.
     """
 
@@ -41,7 +41,7 @@ class Stretch:
     @property
     def greatest(self) -> float:
         """In the frame in which it is worst, file units."""
-        return float(self.missed.max(initial=0))
+        return float(np.nanmax(self.missed, initial=0))
 
     @property
     def mm(self) -> NDArray[np.float64]:

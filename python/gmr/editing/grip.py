@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from gmr.arrays import frozen
 from gmr.editing.easing import blend_weights
 from gmr.editing.edited import Edited, Stretch
-from gmr.editing.limbs import limb_that_moves
+from gmr.editing.limbs import hands_of, limb_that_moves
 from gmr.editing.rejoin import cut_at, moved_roots, rejoin
+from gmr.editing.roles import known_roles
 from gmr.errors import GmrError, SkeletonError
 from gmr.motion import Motion
 from gmr.tpose import leading_rest_frames
@@ -71,7 +72,7 @@ class GripReport:
     Args:
         joints: the two that hold the bar.
         spacing: file units between them on the bar.
-        moved: (F, 2) how far each was to be moved, file units.
+        moved: (F, 2) how far each was to be moved, file units; NaN where the pose is not known.
         stretch: for each arm, how far it was too short.
     """
 
@@ -98,14 +99,14 @@ class GripReport:
         unit = self.stretch[0].unit
         return (
             f"{' and '.join(self.joints)} {unit.said(self.spacing)} apart, moved by "
-            f"{unit.said(float(self.moved.max(initial=0)))} at most; "
+            f"{unit.said(float(np.nanmax(self.moved, initial=0)))} at most; "
             f"{'; '.join(str(one) for one in self.stretch)}{unit.note}"
         )
 
 
 def grip(
     motion: Motion,
-    joints: tuple[Joint, Joint] = ("LeftHand", "RightHand"),
+    joints: tuple[Joint, Joint] | None = None,
     bar: Bar | None = None,
     *,
     spacing: float | None = None,
@@ -119,7 +120,8 @@ def grip(
 
     Args:
         motion: any.
-        joints: the two hands, names or indices, in the order in which they are along the bar.
+        joints: the two hands, names or indices, in the order in which they are along the bar; by default the
+            joints that are named as the left and the right hand.
         bar: on which the hands hold the place that is nearest to where they are (the median over the frames).
             None: a bar that goes along with the hands: their middle is its middle, and it points from the one
             to the other.
@@ -139,12 +141,14 @@ def grip(
     """
     count = motion.frame_count
     first, end = _frames(motion, frames)
-    indices = motion.skeleton.indices(joints).tolist()
-    limbs = [limb_that_moves(motion.skeleton, joint) for joint in indices]
+    hands_named = hands_of(motion.skeleton) if joints is None else tuple(joints)
+    indices = motion.skeleton.indices(hands_named).tolist()
+    roles = known_roles(motion)
+    limbs = [limb_that_moves(motion.skeleton, joint, roles) for joint in indices]
     if not hold_rotation:
         limbs = [replace(limb, end=joint) for limb, joint in zip(limbs, indices, strict=True)]
     if len(indices) != 2 or limbs[0].middle == limbs[1].middle:
-        raise SkeletonError(f"joints={tuple(joints)}: name two joints, one of each arm")
+        raise SkeletonError(f"joints={hands_named}: name two joints, one of each arm")
     hands = motion.positions(dtype=np.float64, joints=indices)
     point, along = _carried_bar(hands, motion, first, end) if bar is None else bar.over(count)
     apart = ((hands[:, 1] - hands[:, 0]) * along).sum(axis=1)[first:end]
@@ -160,8 +164,8 @@ def grip(
     loose = moved_roots(cut_at(motion, ends), dict(zip(ends, np.moveaxis(wrists, 1, 0), strict=True)))
     edited = rejoin(loose, motion, limbs=limbs, hold_rotation=hold_rotation)
     names = motion.skeleton.names[indices[0]], motion.skeleton.names[indices[1]]
-    ordered = sorted(edited.report.stretch, key=lambda one: ends.index(motion.skeleton.index(one.joint)))
-    report = GripReport(names, width, np.linalg.norm(moves, axis=2), tuple(ordered))
+    stretch = edited.report.stretch if ends == sorted(ends) else edited.report.stretch[::-1]
+    report = GripReport(names, width, np.linalg.norm(moves, axis=2), stretch)
     return Edited(edited.motion, report)
 
 

@@ -115,22 +115,28 @@ def ground_path(motion: Motion, names: Mapping[str, str | int] | None = None) ->
 
     Raises:
         DatasetError: the joints of a body are not found.
-        GmrError: the body has no facing in any frame, or there is no frame.
+        GmrError: the body has no facing in any frame, a pose is not known (NaN), or there is no frame.
     """
     lead = leading_rest_frames(motion)
     recorded = home(motion[lead:])
     if not recorded.frame_count:
         raise GmrError(f"{motion.name or 'this motion'} has no frames, so it has no path")
-    sampled = recorded[:: max(1, recorded.frame_count // _SAMPLES)].positions(dtype=np.float64)
-    joints = find_joints(recorded.skeleton, sampled, names)
-    ground, heading = _smoothed(recorded, joints, scene_of(motion).up)
+    places = recorded.positions(dtype=np.float64)
+    unknown = np.flatnonzero(~np.isfinite(places).all(axis=(1, 2)))
+    if len(unknown):
+        raise GmrError(
+            f"{motion.name or 'this motion'} has no path: {len(unknown)} of its poses are not known (NaN), "
+            f"the first in frame {lead + int(unknown[0])}; cut them out, or fill them"
+        )
+    joints = find_joints(recorded.skeleton, places[:: max(1, len(places) // _SAMPLES)], names)
+    ground, heading = _smoothed(recorded, places, joints, scene_of(motion).up)
     return GroundPath(
         np.pad(ground, ((lead, 0), (0, 0)), mode="edge"), np.pad(heading, (lead, 0), mode="edge")
     )
 
 
-def _smoothed(motion: Motion, joints: Joints, up: str) -> tuple[Floats, Floats]:
-    upright = np.ascontiguousarray(turned_upright(motion.positions(dtype=np.float64), up), np.float32)
+def _smoothed(motion: Motion, places: Floats, joints: Joints, up: str) -> tuple[Floats, Floats]:
+    upright = np.ascontiguousarray(turned_upright(places, up), np.float32)
     rate = motion.fps if motion.frame_time else 1.0
     windows = [round(seconds * rate) | 1 for seconds in (_POSITION_WINDOW, _HEADING_WINDOW)]
     try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -10,15 +9,16 @@ from typing import Any
 import numpy as np
 
 from gmr.body.joints import named_roles
-from gmr.body.naming import side_and_part
+from gmr.body.naming import HANDS, side_and_part
 from gmr.errors import SkeletonError
+from gmr.listing import quoted
 from gmr.skeleton import Skeleton
 
-__all__ = ["Limb", "feet_of", "limb_of", "limb_that_moves", "path_down"]
+__all__ = ["Limb", "feet_of", "hands_of", "limb_of", "limb_that_moves", "path_down"]
 
 Joint = str | int | np.integer[Any]
 
-_WRIST = re.compile(r"hand|wrist")
+_SHOWN = 40
 _TOPS = ("left_up_leg", "right_up_leg", "left_shoulder", "right_shoulder")
 
 
@@ -53,7 +53,8 @@ def limb_of(skeleton: Skeleton, end: Joint, roles: Mapping[str, int] | None = No
     Args:
         skeleton: in any configuration; the limb is that at home.
         end: name or index.
-        roles: the joints of the body, as :mod:`gmr.body.joints` finds them; by their names where not given.
+        roles: the joints of the body, as :func:`gmr.editing.roles.known_roles` finds them in a motion; by
+            their names alone where not given.
 
     Raises:
         SkeletonError: there are no two bones above the joint.
@@ -84,7 +85,7 @@ def limb_that_moves(skeleton: Skeleton, joint: Joint, roles: Mapping[str, int] |
     feet = feet_of(at_home, known)
     here = index
     while here >= 0:
-        if here in feet or _WRIST.fullmatch(side_and_part(at_home.names[here])[1]):
+        if here in feet or side_and_part(at_home.names[here])[1] in HANDS:
             return limb_of(at_home, here, known)
         here = int(at_home.parents[here])
     return limb_of(at_home, index, known)
@@ -94,6 +95,26 @@ def feet_of(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> set[i
     """The ankles, as far as they are known."""
     known = _roles(skeleton, roles)
     return {known[role] for role in ("left_foot", "right_foot") if role in known}
+
+
+def hands_of(skeleton: Skeleton) -> tuple[int, int]:
+    """The left and the right hand, by their names.
+
+    Raises:
+        SkeletonError: a side has no joint named so.
+    """
+    parts = [side_and_part(name) for name in skeleton.names]
+    found = []
+    for side in ("left", "right"):
+        known = (parts.index((side, word)) for word in HANDS if (side, word) in parts)
+        hand = next(known, None)
+        if hand is None:
+            raise SkeletonError(
+                f"no joint is named as the {side} hand; name both: joints=('LeftHand', 'RightHand') or as "
+                f"this skeleton calls them: {quoted(skeleton.names, _SHOWN)}"
+            )
+        found.append(hand)
+    return found[0], found[1]
 
 
 def path_down(skeleton: Skeleton, top: int, bottom: int) -> list[int]:

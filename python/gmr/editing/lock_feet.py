@@ -7,7 +7,7 @@ Cleanup for Motion Capture Editing" (2002), which stretches bones where we say h
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal, get_args
@@ -15,15 +15,16 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.editing.contacts import Contact, Contacts, foot_roles, slide
+from gmr.editing.contacts import Contact, Contacts, slide
 from gmr.editing.contacts import contacts as find_contacts
 from gmr.editing.easing import eased
 from gmr.editing.edited import Edited, Stretch
 from gmr.editing.giving_way import HeldFoot, lifted_heel, lowered_hips
 from gmr.editing.limbs import Limb, limb_that_moves
 from gmr.editing.rejoin import cut_at, moved_roots, rejoin
+from gmr.editing.roles import known_roles
 from gmr.editing.world_turns import world_of
-from gmr.errors import DatasetError, GmrError, SkeletonError
+from gmr.errors import GmrError, SkeletonError
 from gmr.forest import home
 from gmr.listing import quoted
 from gmr.motion import Motion
@@ -184,10 +185,7 @@ def _headings(motion: Motion, end: int, up: Floats) -> Floats:
 
 def _limbs(motion: Motion, held: Contacts) -> dict[str, Limb]:
     """The limb that moves each joint that has a contact."""
-    try:
-        roles: Mapping[str, int] | None = foot_roles(motion)
-    except DatasetError:
-        roles = None
+    roles = known_roles(motion)
     limbs: dict[str, Limb] = {}
     for name in held.joints:
         if not held.of(name):

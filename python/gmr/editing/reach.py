@@ -12,6 +12,7 @@ from gmr.editing.easing import blend_weights
 from gmr.editing.edited import Edited, Stretch
 from gmr.editing.limbs import Limb, feet_of, limb_that_moves
 from gmr.editing.rejoin import cut_at, moved_roots, rejoin
+from gmr.editing.roles import known_roles
 from gmr.errors import GmrError
 from gmr.motion import Motion
 
@@ -92,9 +93,10 @@ def reach(
     if not (np.isfinite(window) and window >= 0 and np.isfinite(hold) and hold >= 0):
         raise GmrError(f"window={window}, hold={hold}: give seconds, 0 or more")
     index = motion.skeleton.index(joint)
-    chosen = limb or limb_that_moves(motion.skeleton, index)
+    roles = known_roles(motion)
+    chosen = limb or limb_that_moves(motion.skeleton, index, roles)
     if hold_rotation is None:
-        hold_rotation = chosen.end in feet_of(motion.skeleton)
+        hold_rotation = chosen.end in feet_of(motion.skeleton, roles)
     if limb is None and not hold_rotation:
         chosen = replace(chosen, end=index)
     path, end = np.moveaxis(motion.positions(dtype=np.float64, joints=[index, chosen.end]), 1, 0)

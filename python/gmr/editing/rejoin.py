@@ -18,6 +18,7 @@ from gmr.arrays import read_only
 from gmr.editing.edited import Edited, Stretch
 from gmr.editing.keeping import ROUNDING, restored
 from gmr.editing.limbs import Limb, limb_of, path_down
+from gmr.editing.roles import known_roles
 from gmr.editing.scene import Unit, scene_of
 from gmr.editing.two_bone import TwoBone, two_bone
 from gmr.editing.world_turns import turned, world_of
@@ -69,12 +70,21 @@ def moved_roots(
         places: for each root, by index, (F, 3) its new place in the world, file units.
         turns: for joints, by index, (F, 4) what comes after the rotation that the bone ending in each has; a
             root turns all that hangs on it, as every bone does but for those that have a turn of their own.
+
+    Raises:
+        SkeletonError: a bone that is to turn has no rotation of its own.
     """
     columns = {joint: k for k, joint in enumerate(loose.translated.tolist())}
     translations = loose.translations.copy()
     for root, place in places.items():
         translations[:, columns[root]] = place
     slots = loose.skeleton.slots
+    for joint in turns or {}:
+        if slots[joint] < 0:
+            raise SkeletonError(
+                f"the bone that ends in '{loose.skeleton.names[joint]}' has no rotation of its own, so it "
+                "cannot be turned; turn the bone above it"
+            )
     rotations = turned(loose, {int(slots[joint]): turn for joint, turn in (turns or {}).items()})
     pose = Pose(read_only(rotations), loose.translated, read_only(translations), loose.layout)
     return replace(loose, source=pose, dropped=_without_rows(loose))
@@ -112,7 +122,8 @@ def rejoin(
     ends = np.flatnonzero(loose.skeleton.links >= 0).tolist()
     ends = [end for end in ends if before.skeleton.links[end] < 0]
     stated = {limb.end: limb for limb in limbs}
-    chosen = [stated.get(end) or limb_of(kept.skeleton, end) for end in ends]
+    roles = None if stated.keys() >= set(ends) else known_roles(before)
+    chosen = [stated.get(end) or limb_of(kept.skeleton, end, roles) for end in ends]
     _check_apart(kept.skeleton, chosen)
 
     whole = _with_bones_of(joined, kept, ends)

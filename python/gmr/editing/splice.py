@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from gmr.arrays import read_only
 from gmr.channels import ChannelLayout
-from gmr.editing.contacts import foot_roles
 from gmr.editing.edited import Edited
 from gmr.editing.ground_path import ground_path
 from gmr.editing.rejoin import moved_roots
+from gmr.editing.roles import body_roles
 from gmr.editing.scene import scene_of
 from gmr.editing.world_turns import turned
 from gmr.errors import GmrError, SkeletonError
@@ -88,7 +88,7 @@ def splice(
     Raises:
         SkeletonError: a skeleton has no such joint, nothing hangs on it, or a joint would be there twice.
         DatasetError: the joints of a body are not found, which "heading" and "pelvis" need.
-        GmrError: rates or units differ, or a frame does not exist.
+        GmrError: rates, units or the axes that point up differ, or a frame does not exist.
     """
     _check(lower, upper, keep, blend)
     lower, upper, taken = _together(lower, upper, frames)
@@ -148,7 +148,7 @@ def _turn(lower: Motion, upper: Motion, keep: Keep) -> Floats:
         headings = [ground_path(motion).heading for motion in (lower, upper)]
         return about(scene_of(lower).up_vector, headings[0] - headings[1])
     pelves = [
-        motion.bone_rotations(dtype=np.float64)[:, foot_roles(motion)["left_up_leg"]]
+        motion.bone_rotations(dtype=np.float64)[:, body_roles(motion)["left_up_leg"]]
         for motion in (lower, upper)
     ]
     return multiply(pelves[0], conjugate(pelves[1]))
@@ -241,6 +241,12 @@ def _check(lower: Motion, upper: Motion, keep: str, blend: int) -> None:
         raise GmrError(
             f"the lower clip has {lower.fps:g} frames a second, the upper one {upper.fps:g}; resample one of "
             "them first: upper.resample(lower.fps)"
+        )
+    ups = scene_of(lower).up, scene_of(upper).up
+    if ups[0] != ups[1]:
+        raise GmrError(
+            f"up is {ups[0]} in the lower clip and {ups[1]} in the upper one; turn one of them first: export "
+            "it with the other's axes"
         )
     if lower.unit != upper.unit:
         raise GmrError(

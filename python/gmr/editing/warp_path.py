@@ -17,7 +17,7 @@ from gmr.editing.keeping import restored
 from gmr.editing.lock_feet import LockReport, lock_feet, slides
 from gmr.editing.scene import Scene, scene_of
 from gmr.editing.world_turns import turned
-from gmr.errors import GmrError
+from gmr.errors import GmrError, SkeletonError
 from gmr.forest import home
 from gmr.frames import Pose
 from gmr.motion import Motion
@@ -97,6 +97,7 @@ def warp_path(
     Raises:
         DatasetError: the joints of a body are not found.
         GmrError: the path has another number of frames, or is given together with how to make one.
+        SkeletonError: a bone has no rotation that could turn with the body.
     """
     before = ground_path(motion)
     if path is None:
@@ -127,6 +128,12 @@ def _moved(motion: Motion, before: GroundPath, path: GroundPath, scene: Scene) -
     for k, joint in enumerate(pose.translated.tolist()):
         if skeleton.parents[joint] < 0:
             translations[:, k] = new + rotated(turn, translations[:, k] - old)
+    still = np.flatnonzero((np.asarray(skeleton.topology.world_slots) < 0) & (skeleton.parents >= 0))
+    if len(still):
+        raise SkeletonError(
+            f"the bone that ends in '{skeleton.names[still[0]]}' has no rotation, so it cannot be turned "
+            "with the body; leave the joint out: motion.select([...])"
+        )
     above = np.asarray(skeleton.topology.slot_parents)
     first = [slot for slot in np.unique(skeleton.slots).tolist() if slot >= 0 and above[slot] < 0]
     rotations = turned(at_home, dict.fromkeys(first, turn))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import math
 import os
 from pathlib import Path
@@ -25,6 +26,9 @@ __all__ = ["USUAL_FPS", "read_amc", "read_asf"]
 
 USUAL_FPS = 120.0
 """Frames a second of a file that names no rate: that of the CMU database."""
+
+_HIGHEST = 1 << 63
+"""Number of a first frame at most, so that 64 bits can count on from it."""
 
 _MOST_COUNTED = 1 << 16
 """Bytes of a line in which superfluous numbers are counted."""
@@ -62,7 +66,7 @@ def read_amc(
     """
     asf_name, asf_data = asf_contents(asf, name)
     acclaim = parse_asf(asf_data, name=asf_name, strict=strict)
-    text = Text(bytes(data), name=name, strict=strict)
+    text = Text(_in_utf8(bytes(data)), name=name, strict=strict)
     notes = leading_comments(text)
     head = _read_head(text, acclaim.radians)
     rows, listed, first = _read_frames(text, acclaim, asf_name)
@@ -72,6 +76,17 @@ def read_amc(
     if not _is_rate(rate):
         raise FormatError(f"a motion cannot have {rate} frames a second; give fps=120 or so", file=name)
     return _motion(acclaim, source, 1 / rate if rate else 0.0, name)
+
+
+def _in_utf8(data: bytes) -> bytes:
+    """The file as UTF-8 where it is Latin-1, as the names of its ASF are then; see :meth:`Text.decoded`."""
+    if data.isascii() or data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data
+    try:
+        data.decode()
+    except UnicodeDecodeError:
+        return data.decode("latin-1").encode()
+    return data
 
 
 def _motion(acclaim: Acclaim, source: DofRows, frame_time: float, name: str | None) -> Motion:
@@ -162,7 +177,7 @@ def _read_frames(
         text.odd(
             "the file ends inside a frame, which is left out. Export it again for the rest.", at=fault.start
         )
-    return rows, tuple(listed), first
+    return rows, tuple(listed), min(first, _HIGHEST)
 
 
 def _failure(text: Text, acclaim: Acclaim, asf: str | None, fault: _Fault) -> FormatError:

@@ -15,7 +15,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from gmr.errors import FormatError
+from gmr.formats.block_errors import no_offset, unexpected_in_block
 from gmr.formats.channel_lists import read_channels
 from gmr.formats.text import Text, named, shown
 from gmr.formats.vectors import Vector, take_vector
@@ -105,7 +105,8 @@ class _Reader:
                 case b"}":
                     self.close(blocks.pop())
                 case _:
-                    raise self.unexpected(block, word)
+                    title = self.title(block.joint)
+                    raise unexpected_in_block(self.text, word, title, block.start, _ITEMS)
 
     def open_joint(self, parent: int) -> _Block:
         start = self.text.at
@@ -160,27 +161,11 @@ class _Reader:
 
     def close(self, block: _Block) -> None:
         if not block.has_offset:
-            what = "has no OFFSET. Write one, OFFSET 0 0 0 if it is where its parent is."
-            raise self.text.failure(f"{self.title(block.joint)} {what}", expected="OFFSET")
+            raise no_offset(self.text, self.title(block.joint))
         if block.has_children:
             return
         if any(name.lower().endswith("rotation") for name in self.found.channels[block.joint]):
             self.found.add(f"{self.found.names[block.joint]}_end", block.joint, End.TIP)
-
-    def unexpected(self, block: _Block, word: bytes) -> FormatError:
-        """The error for a token that no block of a joint holds."""
-        where = f"{self.title(block.joint)}, which begins at line {self.text.line_of(block.start)}"
-        items = "OFFSET, CHANNELS, JOINT, End Site or }"
-        match word.upper():
-            case b"":
-                what = f"the file ends inside {where}. It may be cut off: export it again."
-            case b"MOTION" | b"ROOT":
-                what = f"{word.decode()} stands inside {where}. Write the closing brace '}}' that is missing."
-            case b"{":
-                what = f"there is a second '{{' in {where}. Remove it."
-            case _:
-                what = f"{shown(word)} stands inside {where}. Write {items} there."
-        return self.text.failure(what, at=self.text.at - len(word), expected=items, column=True)
 
     def title(self, joint: int) -> str:
         """A joint as errors call it."""
@@ -189,5 +174,6 @@ class _Reader:
         return f"joint {named(self.found.names[joint])}"
 
 
+_ITEMS = "OFFSET, CHANNELS, JOINT, End Site or }"
 _CONTROL = re.compile(rb"[\x00-\x1f\x7f]")
 _KEYWORDS = frozenset((b"OFFSET", b"CHANNELS", b"JOINT", b"END", b"ROOT", b"MOTION"))

@@ -17,7 +17,7 @@ from gmr.arrays import read_only
 from gmr.channels import ChannelLayout
 from gmr.errors import FormatError, GmrError
 from gmr.forest import arranged
-from gmr.formats.gmr_content import check
+from gmr.formats.gmr_content import check, off_length
 from gmr.formats.numerals import number
 from gmr.formats.safetensors import Container, read_container
 from gmr.formats.text import named
@@ -36,7 +36,7 @@ def read_gmr_binary(data: bytes | memoryview, *, name: str | None = None, strict
     Args:
         data: the file's bytes, or its map in memory, which the motion then holds on to.
         name: the file's name, for errors and for the motion.
-        strict: look at every number, and raise where one is not finite.
+        strict: look at every number, and raise where one is not finite, or a quaternion not of length 1.
 
     Raises:
         FormatError: the file cannot be read; the message says why, and what to do.
@@ -45,6 +45,8 @@ def read_gmr_binary(data: bytes | memoryview, *, name: str | None = None, strict
     motion = reader.motion()
     if strict:
         check(motion)
+        if isinstance(motion.source, Pose) and (off := off_length(motion.source)):
+            raise FormatError(f"{off}. Divide them by their lengths.", file=name)
     return motion
 
 

@@ -20,7 +20,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from gmr.errors import FormatError
+from gmr.formats.block_errors import no_offset, unexpected_in_block
 from gmr.formats.channel_lists import GMR, POST, read_channels
 from gmr.formats.gmr_names import Reference, take_name, take_reference
 from gmr.formats.text import Text, named, shown
@@ -107,7 +107,8 @@ class _Reader:
             elif keyword in _ITEMS:
                 self.read_item(self.found[here], keyword)
             else:
-                raise self.unexpected(self.found[here], word)
+                block = self.found[here]
+                raise unexpected_in_block(self.text, word, block.title, block.start, _WORDS)
 
     def open_joint(self, parent: int) -> int:
         start = self.text.at
@@ -191,25 +192,10 @@ class _Reader:
 
     def close(self, block: Block) -> None:
         if b"OFFSET" not in block.items:
-            what = "has no OFFSET. Write one, OFFSET 0 0 0 if it is where its parent is."
-            raise self.text.failure(f"{block.title} {what}", expected="OFFSET")
-
-    def unexpected(self, block: Block, word: bytes) -> FormatError:
-        """The error for a token that no block holds."""
-        where = f"{block.title}, which begins at line {self.text.line_of(block.start)}"
-        items = f"{b', '.join(sorted(_ITEMS)).decode()}, JOINT, End or }}"
-        match word.upper():
-            case b"":
-                what = f"the file ends inside {where}. It may be cut off: write it again."
-            case b"MOTION" | b"ROOT":
-                what = f"{word.decode()} stands inside {where}. Write the closing brace '}}' that is missing."
-            case b"{":
-                what = f"there is a second '{{' in {where}. Remove it."
-            case _:
-                what = f"{shown(word)} stands inside {where}. Write {items} there."
-        return self.text.failure(what, at=self.text.at - len(word), expected=items, column=True)
+            raise no_offset(self.text, block.title)
 
 
 _ITEMS = frozenset((b"OFFSET", b"NUMBER", b"TURN", b"KIND", b"LINK", b"TOP", b"CHANNELS", b"POST"))
+_WORDS = f"{b', '.join(sorted(_ITEMS)).decode()}, JOINT, End or }}"
 _KEYWORDS = _ITEMS | {b"JOINT", b"END", b"ROOT", b"MOTION"}
 _KINDS = {b"JOINT": End.JOINT, b"SITE": End.SITE, b"TIP": End.TIP}

@@ -152,8 +152,9 @@ def _check_columns(
     reading: PoseColumns, turning: dict[int, int], channels: Sequence[tuple[str, ...]]
 ) -> None:
     """Raises unless there are columns for each root, each turn, and what else there is room for."""
+    placed = set(reading.translated[(reading.places >= 0).any(axis=1)].tolist())
     for joint in reading.skeleton.roots:
-        if (reading.places[reading.translated == joint] < 0).all():
+        if joint not in placed:
             raise TreesError(
                 joint, "is a root without position channels. Write Xposition Yposition Zposition."
             )

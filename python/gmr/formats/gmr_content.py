@@ -23,9 +23,12 @@ from gmr.frames import Pose, Rows
 from gmr.motion import Motion
 from gmr.skeleton import Skeleton
 
-__all__ = ["check", "kept", "side_by_side"]
+__all__ = ["check", "kept", "off_length", "side_by_side"]
 
 _FORM = "a GMR file"
+
+_OFF_LENGTH = 1e-3
+"""How far from 1 the squared length of a quaternion may be before it is said."""
 
 
 def kept(motion: Motion) -> Motion:
@@ -72,6 +75,18 @@ def check(motion: Motion) -> None:
             which, axis = divmod(column, len(names[0]))
             who = f"joint '{skeleton.names[whose[which]]}', {names[0][axis]}{names[1]}"
             raise unsayable(motion, who, values[frame, column], frame, _FORM)
+
+
+def off_length(pose: Pose) -> str | None:
+    """Quaternions that are not of length 1, in words; None where all are.
+
+    They would stretch bones. How far the squared length may be off: :data:`_OFF_LENGTH`.
+    """
+    off = np.abs(np.einsum("fsc,fsc->fs", pose.rotations, pose.rotations) - 1) > _OFF_LENGTH
+    if not off.any():
+        return None
+    frame = int(np.argwhere(off)[0][0])
+    return f"{off.sum():,} quaternions are not of length 1, the first in frame {frame}"
 
 
 def side_by_side(array: NDArray[np.float64]) -> NDArray[np.float64]:

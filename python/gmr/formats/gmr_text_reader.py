@@ -12,6 +12,7 @@ from gmr.arrays import read_only
 from gmr.channels import ChannelLayout
 from gmr.formats.gmr_blocks import read_blocks
 from gmr.formats.gmr_columns import Columns, PoseColumns, columns_of_rows, moving_joints, pose_of_columns
+from gmr.formats.gmr_content import off_length
 from gmr.formats.gmr_joints import Joints
 from gmr.formats.gmr_trees import TreesError
 from gmr.formats.numerals import number, why_no_number
@@ -25,9 +26,6 @@ from gmr.skeleton import Skeleton
 __all__ = ["read_gmr_text"]
 
 VERSION = 1
-
-_OFF_LENGTH = 1e-3
-"""How far from 1 the squared length of a quaternion may be before it is said."""
 
 
 def read_gmr_text(data: bytes, *, name: str | None = None, strict: bool = False) -> Motion:
@@ -58,7 +56,8 @@ def read_gmr_text(data: bytes, *, name: str | None = None, strict: bool = False)
         source: Rows | Pose = Rows(read_only(_ordered(rows, reading)), layout)
     else:
         source = reading.pose(rows, layout)
-        _check_lengths(text, source)
+        if off := off_length(source):
+            text.odd(f"{off}; read as they are. Divide them by their lengths.")
     return Motion(skeleton, frame_time, source, header.unit, name)
 
 
@@ -95,15 +94,6 @@ def _ordered(rows: NDArray[np.float64], columns: Columns) -> NDArray[np.float64]
     ordered = np.empty_like(rows)
     ordered[:, columns.sources] = rows
     return ordered
-
-
-def _check_lengths(text: Text, pose: Pose) -> None:
-    """Says where a quaternion is none that turns."""
-    off = np.abs(np.einsum("fsc,fsc->fs", pose.rotations, pose.rotations) - 1) > _OFF_LENGTH
-    if off.any():
-        frame = int(np.argwhere(off)[0][0])
-        what = f"{off.sum():,} quaternions are not of length 1, the first in frame {frame}"
-        text.odd(f"{what}; read as they are. Divide them by their lengths.")
 
 
 class _Header(NamedTuple):

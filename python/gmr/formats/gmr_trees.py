@@ -69,10 +69,11 @@ def trees_of(skeleton: Skeleton) -> Trees:
     home = skeleton.home or skeleton
     forest = skeleton.forest
     turns = np.asarray(home.topology.world_slots)[forest.bones]
+    links = skeleton.links
     tops = {}
     for root in skeleton.roots:
         top = forest.top_of(root)
-        above = int(skeleton.links[top])
+        above = int(links[top])
         if top != root or above >= 0:
             x, y, z = home.offsets[top].tolist()
             tops[top] = Top(above, (x, y, z))

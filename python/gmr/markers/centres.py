@@ -91,11 +91,13 @@ def joint_centre(
         functional: whether the motion is asked; not where the child's fit was made with the guess itself.
 
     Raises:
-        ValueError: neither the motion nor anatomy says anything.
+        ValueError: no frame shows both parts, or neither the motion nor anatomy says anything.
     """
     both = parent.known & child.known
     r1, t1 = parent.rotations[both], parent.origins[both]
     r2, t2 = child.rotations[both], child.origins[both]
+    if not len(r1):
+        raise ValueError("no frame shows it and the part above")
     asked = functional and len(r1) >= _FEWEST
     if not asked and guess is None:
         raise ValueError(f"{len(r1)} frames show both parts; {_FEWEST} are needed, or a rule for the centre")
@@ -192,7 +194,5 @@ def _seen_by_child(place: Array, r1: Array, t1: Array, r2: Array, t2: Array) -> 
 
 
 def _gap(in_parent: Array, in_child: Array, r1: Array, t1: Array, r2: Array, t2: Array) -> float:
-    if not len(r1):
-        return 0.0
     apart = r1 @ in_parent + t1 - r2 @ in_child - t2
     return float(np.sqrt(np.square(apart).sum(axis=1).mean()))

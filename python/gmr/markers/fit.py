@@ -125,7 +125,10 @@ def fit(
     if not markers.frame_count:
         raise GmrError(f"{name} has no frames, so there is no motion in it")
     chosen = _chosen(markers, relation)
-    match = match_labels(chosen, markers.labels, subject=subject)
+    try:
+        match = match_labels(chosen, markers.labels, subject=subject)
+    except GmrError as error:
+        raise GmrError(f"{name}: {error}") from None
     notes: list[str] = []
     if match.prefix and subject is None:
         notes.append(f"of several subjects, '{match.prefix}' wears the most of the markers and was taken")
@@ -138,7 +141,7 @@ def fit(
         segments,
         markers.frame_time,
         markers.unit,
-        longest=max_gap / markers.frame_time if markers.frame_time else 0,
+        longest=max_gap / markers.frame_time * (1 + 1e-9) if markers.frame_time else 0,
         bones=bones,
         name=markers.name,
     )

@@ -11,9 +11,14 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from gmr.errors import GmrError
+from gmr.listing import quoted
 from gmr.markers.relation import Relation, load_relation, shipped_relations
 
 __all__ = ["Match", "best_relation", "match_labels"]
+
+_SHOWN = 8
+"""Names of subjects that an error lists."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +51,15 @@ def match_labels(wanted: Relation, labels: Sequence[str], *, subject: str | None
         labels: the labels of the recording; the first counts where one repeats.
         subject: the prefix of the person meant, as "Anna" in "Anna:LASI"; where left out, the one of whom the
             most markers are found.
+
+    Raises:
+        GmrError: no label begins with that prefix.
     """
     prefixes = list(dict.fromkeys(_split(label)[0] for label in labels)) or [""]
+    if subject is not None and subject not in prefixes:
+        known = quoted([prefix for prefix in prefixes if prefix], _SHOWN)
+        there = f"there are {known}" if known else "labels begin with no name; leave it out"
+        raise GmrError(f"no marker is of the subject '{subject}'; {there}")
     tried = [
         (_of_subject(wanted, labels, prefix), prefix) for prefix in prefixes if subject in (None, prefix)
     ]

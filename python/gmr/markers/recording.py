@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.arrays import frozen, read_only
+from gmr.clip import Clip, check_frame_time
 from gmr.errors import GmrError
 from gmr.listing import quoted
 from gmr.markers.gaps import seen
@@ -62,7 +63,7 @@ class Up:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Markers:
+class Markers(Clip):
     """M markers over F frames; immutable. Operations return a new recording that says what was done.
 
     Args:
@@ -103,8 +104,7 @@ class Markers:
                 f"positions have the shape {positions.shape}; {len(self.labels)} labels need "
                 f"(frames, {len(self.labels)}, 3)"
             )
-        if not (math.isfinite(self.frame_time) and self.frame_time >= 0):
-            raise GmrError(f"a frame cannot last {self.frame_time} seconds; give 0 or more")
+        check_frame_time(self.frame_time)
         if self.residuals is not None:
             residuals = frozen(self.residuals, np.float64)
             if residuals.shape != positions.shape[:2]:
@@ -117,19 +117,6 @@ class Markers:
     def frame_count(self) -> int:
         """F."""
         return len(self.positions)
-
-    def __len__(self) -> int:
-        return self.frame_count
-
-    @property
-    def fps(self) -> float:
-        """Frames a second; infinite where the frame time is 0."""
-        return 1 / self.frame_time if self.frame_time else math.inf
-
-    @property
-    def duration(self) -> float:
-        """Seconds, each frame lasting one frame time."""
-        return self.frame_count * self.frame_time
 
     @cached_property
     def visible(self) -> NDArray[np.bool_]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.errors import GmrError
 from gmr.listing import quoted
 from gmr.markers.anatomy import Body
 from gmr.markers.centres import Centre, Guess, joint_centre
@@ -67,6 +68,9 @@ def find_segments(
 
     Returns:
         Part name -> segment, parents first, oriented; and for each part that was left out the reason.
+
+    Raises:
+        GmrError: both directions of a part are one.
     """
     found: dict[str, Segment] = {}
     left_out: dict[str, str] = {}
@@ -189,7 +193,8 @@ def _points(
 
 
 def _axes(segment: Segment, found: Mapping[str, Segment]) -> Array | None:
-    """(3, 3) columns left, up, forward in the template; None where a direction cannot be told.
+    """(3, 3) columns left, up, forward in the template; None where a direction cannot be told, or both are
+    one.
 
     A direction that lacks a point is taken over from the part above, as it is on the average.
     """
@@ -205,6 +210,8 @@ def _axes(segment: Segment, found: Mapping[str, Segment]) -> Array | None:
     axes = np.zeros((3, 3))
     axes[:, first] = along / np.linalg.norm(along)
     across = across - (across @ axes[:, first]) * axes[:, first]
+    if np.linalg.norm(across) < _THIN:
+        return None
     axes[:, second] = across / np.linalg.norm(across)
     third = 3 - first - second
     axes[:, third] = np.cross(axes[:, (third + 1) % 3], axes[:, (third + 2) % 3])
@@ -234,7 +241,11 @@ def _taken_over(axis: int, segment: Segment, found: Mapping[str, Segment]) -> Ar
 def _oriented(segment: Segment, found: Mapping[str, Segment]) -> Segment:
     """The segment with its template's axes left, up, forward and its joint at the origin."""
     axes = _axes(segment, found)
-    assert axes is not None
+    if axes is None:
+        raise GmrError(
+            f"[parts.{segment.part.name}]: its two directions are one line in this recording, which tells no "
+            "turn about it. Give the relation another for one of them, by other markers."
+        )
     points = dict(segment.points)
     if segment.parent is None and segment.part.at and all(name in points for name in segment.part.at):
         points[segment.part.joint] = np.mean([points[name] for name in segment.part.at], axis=0)
