@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING
+import json
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,7 +13,6 @@ from gmr.cli.common import (
     Failures,
     Rate,
     Unit,
-    files_of,
     naming,
     progress,
     read_noting,
@@ -23,8 +22,10 @@ from gmr.cli.common import (
 )
 from gmr.cli.markers import Fitting, fitting_options
 from gmr.cli.roots import Joints
+from gmr.cli.targets import Job, Written, jobs_of
 
 if TYPE_CHECKING:
+    from gmr.formats.registry import Format
     from gmr.markers import Markers
     from gmr.motion import Motion
 
@@ -43,9 +44,45 @@ class _Changes:
     roots: tuple[str, ...] | None
 
 
-@click.command(short_help="Convert motions: rate, unit, mirror image, dummies.")
+@dataclass
+class _Report:
+    """What became of the inputs, for people and for programs."""
+
+    written: list[dict[str, Any]] = field(default_factory=list)
+    beside: list[str] = field(default_factory=list)
+    guessed: dict[str, list[str]] = field(default_factory=dict)
+    fitted: bool = False
+
+    def add(self, job: Job, motion: Motion, beside: list[str]) -> None:
+        """One input is written."""
+        place = {"file": str(job.source), "out": str(job.out)}
+        self.written.append({**place, "beside": beside, "frames": motion.frame_count, "fps": motion.fps})
+        self.beside += beside
+
+    def say(self, failures: Failures, inputs: int) -> None:
+        """The end of the work in sentences: what was taken for granted, and what failed."""
+        for guess, names in self.guessed.items():
+            say(f"{_several(names)} taken to be in {guess}; state another unit with --from-unit")
+        if self.beside:
+            several = f"{len(self.beside)} .asf files beside"
+            say(f"the skeleton is in {self.beside[0] if len(self.beside) == 1 else several}")
+        if failures.errors and inputs > 1:
+            say(f"{len(failures.errors)} of {inputs} files failed: {', '.join(failures.errors)}")
+
+    def as_json(self, failures: Failures) -> str:
+        """The same for programs."""
+        failed = [{"file": name, "error": error} for name, error in failures.errors.items()]
+        return json.dumps({"written": self.written, "failed": failed}, indent=2, allow_nan=False)
+
+
+@click.command(short_help="Convert motions: format, rate, unit, mirror image, dummies.")
 @click.argument("source", metavar="IN")
 @click.argument("target", metavar="OUT")
+@click.option(
+    "--to",
+    type=Written(),
+    help="The format to write: bvh, amc, gmr, ...; told by the suffix otherwise, and in a folder kept.",
+)
 @click.option("--fps", type=Rate(), help="Resample to this rate: rotations by slerp.")
 @click.option("--unit", type=Unit(), help="Convert to this unit: m, cm, mm, in, ft, cmu or metres per unit.")
 @click.option(
@@ -63,6 +100,7 @@ class _Changes:
 def convert(
     source: str,
     target: str,
+    to: Format | None,
     fps: float | None,
     unit: float | None,
     from_unit: float | None,
@@ -79,12 +117,14 @@ def convert(
 
     IN is a file, a folder (then OUT is one too, and gets the same tree) or - for standard input; OUT - is
     standard output. Without options every value is written as it was read. A file is replaced when its
-    successor is whole. With an .amc its .asf is written beside it.
+    successor is whole. With an .amc its .asf is written beside it. Files of a folder that cannot be converted
+    are named, and the others written.
 
     \b
     Examples:
       gmr convert walk.bvh walk60.bvh --fps 60
       gmr convert takes/ mirrored/ --mirror
+      gmr convert takes/ out/ --to bvh      every .amc, .bvh, .gmr and .gmrb, below too, becomes a .bvh
       gmr convert cmu.bvh metres.bvh --from-unit cmu --unit m
       gmr convert walk.bvh lean.bvh --drop-dummies
       gmr convert walk.bvh walk.amc
@@ -95,65 +135,39 @@ def convert(
     """
     if from_unit is not None and unit is None:
         raise click.UsageError("--from-unit says what --unit converts from; give --unit too")
+    if fitting.as_json and target == STDIO:
+        raise click.UsageError(
+            "--json is printed on standard output, where the motion goes; name a file as OUT"
+        )
     changes = _Changes(fps, unit, from_unit, drop_dummies, mirror, roots)
-    failures = Failures()
-    guessed: dict[str, list[str]] = {}
-    beside: list[str] = []
-    with progress(_jobs(source, target), "Converting") as watched:
-        for path, out in watched:
-            with failures.of(str(path)):
-                motion, warnings = read_noting(path, positions=positions, asf=asf, fps=amc_fps, strict=strict)
+    failures, report = Failures(), _Report()
+    jobs = jobs_of(source, target, to)
+    with progress(jobs, "Converting") as watched:
+        for job in watched:
+            with failures.of(str(job.source)):
+                found, warnings = read_noting(
+                    job.source, positions=positions, asf=asf, fps=amc_fps, strict=strict
+                )
                 for warning in warnings:
                     say(warning)
-                motion = _fitted(motion, fitting)
+                motion = _fitted(found, fitting, report)
                 with naming(motion):
-                    motion = _changed(motion, changes, guessed)
-                beside += write_output(motion, out)
-    for guess, names in guessed.items():
-        say(f"{_several(names)} taken to be in {guess}; state another unit with --from-unit")
-    if beside:
-        say(f"the skeleton is in {beside[0] if len(beside) == 1 else f'{len(beside)} .asf files beside'}")
+                    motion = _changed(motion, changes, report.guessed)
+                report.add(job, motion, write_output(motion, job.out, job.format))
+    report.say(failures, len(jobs))
+    if fitting.as_json and not report.fitted:
+        click.echo(report.as_json(failures))
     return failures.exit_code()
 
 
-def _jobs(source: str, target: str) -> list[tuple[Path | str, Path | str]]:
-    """Each input with the place that it goes to."""
-    from gmr.formats.registry import suffixes
-
-    if source != STDIO and Path(source).is_dir():
-        if target == STDIO or Path(target).is_file():
-            raise click.UsageError(f"'{source}' is a folder, so OUT must be a folder too, not '{target}'")
-        if not Path(target).exists() and Path(target).suffix.lower() in suffixes():
-            raise click.UsageError(
-                f"'{source}' is a folder, so OUT must be a folder too, but '{target}' is called like a file; "
-                "give a name without the suffix"
-            )
-        return [(path, Path(target, Path(path).relative_to(source))) for path in files_of(source)]
-    if target != STDIO and Path(target).is_dir():
-        if source == STDIO:
-            raise click.UsageError(f"'{target}' is a folder; name the file to write")
-        return [(source, Path(target, Path(source).name))]
-    if target != STDIO:
-        _check_suffix(target)
-    return [(source, target)]
-
-
-def _check_suffix(target: str) -> None:
-    """Refuses a place that no format has the suffix of before anything is read."""
-    from gmr.errors import FormatError
-    from gmr.formats.registry import format_of_file
-
-    try:
-        format_of_file(target)
-    except FormatError as error:
-        raise click.UsageError(str(error)) from error
-
-
-def _fitted(found: Motion | Markers, fitting: Fitting) -> Motion:
+def _fitted(found: Motion | Markers, fitting: Fitting, report: _Report) -> Motion:
     """The motion that was read, or that is made of the markers that were."""
     from gmr.markers import Markers
 
-    return fitting.motion(found) if isinstance(found, Markers) else found
+    if not isinstance(found, Markers):
+        return found
+    report.fitted = True
+    return fitting.motion(found)
 
 
 def _changed(motion: Motion, changes: _Changes, guessed: dict[str, list[str]]) -> Motion:

@@ -82,7 +82,8 @@ def fitting_options(command: Command) -> Command:
         click.option("--known-only", is_flag=True,
                      help="C3D: write only the longest stretch in which every part is known."),
         click.option("--picture", metavar="FILE.svg", help="C3D: draw markers and skeleton in some frames."),
-        click.option("--json", "as_json", is_flag=True, help="C3D: print how well the markers fit as JSON."),
+        click.option("--json", "as_json", is_flag=True, help="Print JSON: which files were written and which "
+                     "failed; for C3D, how well the markers fit."),
     )  # fmt: skip
 
     @functools.wraps(command)
