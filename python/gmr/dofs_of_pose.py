@@ -194,14 +194,18 @@ def _still(skeleton: Skeleton, joint: int, vectors: NDArray[np.float64]) -> NDAr
 
 
 def _names(skeleton: Skeleton, root: int) -> list[str]:
-    """The joints' names; End Sites and tips, which share one where their parent has several, are numbered."""
-    taken = {name for name, end in zip(skeleton.names, skeleton.ends, strict=True) if end == End.JOINT}
+    """The joints' names. The root is called ``root``; another joint of that name, such as the root that the
+    motion had before it was turned over, is numbered, and so are End Sites and tips, which share one where
+    their parent has several."""
+    is_joint = skeleton.ends == End.JOINT
+    taken = {name for name, stays in zip(skeleton.names, is_joint, strict=True) if stays} | {"root"}
     found = list(skeleton.names)
-    for joint in np.flatnonzero(skeleton.ends != End.JOINT).tolist():
+    found[root] = "root"
+    called_root = [joint for joint, name in enumerate(found) if name == "root" and joint != root]
+    for joint in dict.fromkeys([*called_root, *np.flatnonzero(~is_joint).tolist()]):
         name, number = found[joint], 2
         while found[joint] in taken:
             found[joint] = f"{name}{number}"
             number += 1
         taken.add(found[joint])
-    found[root] = "root"
     return found
