@@ -16,6 +16,7 @@ import json
 import statistics
 import time
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ import gmr
 from gmr.bench.harness import one_core
 from gmr.bench.inputs import cmu_like_bvh
 from gmr.bench.roots import EULER_ROWS, QUATERNIONS, SETS, Recordings, Work, random_roots, record
+from gmr.formats.gmr import gmr_chunks
 
 GMR = "GMR, k roots"
 COLOURS = {EULER_ROWS: "#c0392b", QUATERNIONS: "#c8711a", GMR: "#2a6ea9"}
@@ -144,20 +146,22 @@ def _ratio(bvh: Point, mine: Point) -> str:
 
 
 def sizes(recordings: Recordings) -> Iterator[str]:
-    """Lines of a Markdown table of the bytes that a frame takes in memory."""
-    full, lean = recordings.bvh[0][:4], recordings.lean[0][:4]
+    """Lines of a Markdown table of the bytes that a frame takes in memory, and in a text .gmr."""
+    full, lean = recordings.bvh[0], recordings.lean[0]
     rows = full.rows.shape[1]
-    text = len(cmu_like_bvh().partition(b"Frame Time:")[2]) / 36_088
-    yield "| what | numbers a frame | float64 | float32 |"
-    yield "|---|---|---|---|"
-    yield f"| BVH text | {rows} | {text:.0f} bytes of text | |"
-    yield f"| BVH rows, as read | {rows} | {8 * rows} | |"
-    yield _size("BVH as quaternions, with dummies", numbers(full))
-    for name, motion in (("with dummies", full), ("without", lean)):
+    bvh = len(cmu_like_bvh().partition(b"Frame Time:")[2]) / 36_088
+    yield "| what | numbers a frame | float64 | float32 | text `.gmr` |"
+    yield "|---|---|---|---|---|"
+    yield f"| BVH text | {rows} | {bvh:.0f} bytes of text | | |"
+    yield f"| BVH rows, as read | {rows} | {8 * rows} | | {text(full):.0f} |"
+    quaternions = replace(full, source=replace(full.pose, layout=None, rows=None))
+    yield _size("BVH as quaternions, with dummies", numbers(full), text(quaternions))
+    for name, motion in (("with dummies", quaternions), ("without", lean)):
         count = motion.skeleton.joint_count
         for k in (1, (count + 1) // 2, count):
-            found = [numbers(motion.with_roots(roots)) for roots in random_roots(count, k)]
-            yield _size(f"GMR C_{k}, {count} joints, {name}", statistics.mean(found))
+            found = [motion.with_roots(roots) for roots in random_roots(count, k)]
+            mean = statistics.mean(map(numbers, found)), statistics.mean(map(text, found))
+            yield _size(f"GMR C_{k}, {count} joints, {name}", *mean)
     yield _size("positions alone: all that C_26 reads for them", 3 * lean.skeleton.joint_count)
 
 
@@ -166,8 +170,15 @@ def numbers(motion: gmr.Motion) -> int:
     return 4 * motion.skeleton.slot_count + 3 * len(motion.translated)
 
 
-def _size(what: str, count: float) -> str:
-    return f"| {what} | {count:.0f} | {8 * count:.0f} | {4 * count:.0f} |"
+def text(motion: gmr.Motion) -> float:
+    """Bytes that a frame of the motion takes in a text .gmr."""
+    written = b"".join(map(bytes, gmr_chunks(motion)))
+    return len(written.partition(b"Frame Time:")[2].partition(b"\n")[2]) / motion.frame_count
+
+
+def _size(what: str, count: float, text: float | None = None) -> str:
+    said = "" if text is None else f"{text:.0f}"
+    return f"| {what} | {count:.0f} | {8 * count:.0f} | {4 * count:.0f} | {said} |"
 
 
 def main() -> None:
