@@ -172,25 +172,25 @@ struct Place {
 /// Bytes that are compared at once.
 const WORD: usize = 16;
 
-/// A name and the blank after it, with which its lines begin; a name that is too long is looked up instead.
+/// A name and the blank after it, with which its lines begin.
 struct Word {
     bone: usize,
     bytes: u128,
     mask: u128,
+    /// What does not fit into the bytes.
+    rest: Vec<u8>,
     length: usize,
 }
 
 impl Word {
     fn new(bone: usize, name: &[u8]) -> Self {
-        let (mut bytes, mut mask) = ([0; WORD], [0xff; WORD]);
-        let fits = name.len() < WORD;
-        if fits {
-            bytes[..name.len()].copy_from_slice(name);
-            bytes[name.len()] = b' ';
-            mask[name.len() + 1..].fill(0);
-        }
-        // A long name leaves NUL bytes, with which no line begins.
-        Self { bone, bytes: u128::from_le_bytes(bytes), mask: u128::from_le_bytes(mask), length: name.len() }
+        let (mut bytes, mut mask) = ([0; WORD], [0; WORD]);
+        let begins = [name, b" "].concat();
+        let held = begins.len().min(WORD);
+        bytes[..held].copy_from_slice(&begins[..held]);
+        mask[..held].fill(0xff);
+        let (bytes, mask) = (u128::from_le_bytes(bytes), u128::from_le_bytes(mask));
+        Self { bone, bytes, mask, rest: begins[held..].to_vec(), length: name.len() }
     }
 }
 
@@ -355,7 +355,9 @@ impl<'a> Reader<'a> {
     fn expected(&self, step: usize, at: usize) -> Option<(usize, usize)> {
         let word = self.words.get(step)?;
         let window = self.job.text.get(at..at + WORD)?.first_chunk()?;
-        (u128::from_le_bytes(*window) & word.mask == word.bytes).then_some((word.bone, at + word.length))
+        let begins = u128::from_le_bytes(*window) & word.mask == word.bytes;
+        let goes_on = || word.rest.is_empty() || self.job.text[at + WORD..].starts_with(&word.rest);
+        (begins && goes_on()).then_some((word.bone, at + word.length))
     }
 
     /// The bone that the line at `at` names, `None` where it is the next frame's number, else its first token.

@@ -36,6 +36,20 @@ fn values_go_to_the_columns_of_their_bones_whatever_the_order() {
 }
 
 #[test]
+fn long_names_are_told_apart_by_their_ends() {
+    let names: [&[u8]; 3] = [b"a_name_of_sixteen", b"a_name_of_sixteen_and", b"a_name_of_sixtee"];
+    let bones = names.map(|name| Bone { name, values: 1 });
+    let read = |text: &str| ParseFrames { text: text.as_bytes(), start: 0, bones: &bones }.run();
+    let frame = "a_name_of_sixteen 1\na_name_of_sixteen_and 2\na_name_of_sixtee 3\n";
+    let turned = "a_name_of_sixtee 6\na_name_of_sixteen_and\t5\na_name_of_sixteen 4\n";
+    let found = read(&format!("1\n{frame}2\n{turned}3\n{frame}"));
+    assert_eq!((found.frames, found.fault), (3, None));
+    assert_eq!(found.values, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 1.0, 2.0, 3.0]);
+    let found = read(&format!("1\n{frame}2\na_name_of_sixteenth 4\n"));
+    assert_eq!(found.fault.map(|fault| fault.flaw), Some(FrameFlaw::UnknownBone));
+}
+
+#[test]
 fn blanks_comments_line_ends_and_padding_change_nothing() {
     let plain = read(&format!("1\n{FRAME}2\n{FRAME}"));
     for text in [

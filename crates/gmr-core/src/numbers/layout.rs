@@ -39,3 +39,14 @@ const fn gather() -> [[[u8; WIDTH]; WIDTH]; WIDTH] {
     }
     table
 }
+
+/// `5^k`, as long as it is a `u64`.
+pub(super) const FIVES: [u64; 28] = {
+    let mut powers = [1; 28];
+    let mut k = 1;
+    while k < powers.len() {
+        powers[k] = 5 * powers[k - 1];
+        k += 1;
+    }
+    powers
+};

@@ -46,10 +46,23 @@ fn any_finite() -> impl Strategy<Value = f64> {
     ]
 }
 
+/// Decimals that lie in the middle of two doubles, or a last digit beside.
+fn halfway() -> impl Strategy<Value = String> {
+    (1_u64 << 52..1 << 53, 0..4_u32, -1..2_i64).prop_map(|(mantissa, places, off)| {
+        // (m + 1/2) / 2^places, in units of 10^-(places + 1).
+        let tenfold = u128::from(2 * mantissa + 1) * 5_u128.pow(places + 1);
+        let digits = (tenfold as i128 + i128::from(off)).to_string();
+        let (whole, fraction) = digits.split_at(digits.len() - places as usize - 1);
+        format!("{whole}.{fraction}")
+    })
+}
+
 fn decimal_text() -> impl Strategy<Value = String> {
     prop_oneof![
         "-?[0-9]{1,4}\\.[0-9]{0,6}",
         "-?[0-9]{0,20}\\.[0-9]{1,22}",
+        "-?0\\.0{0,9}[1-9][0-9]{14,18}(e-[0-9])?",
+        halfway(),
         "[+-]?[0-9]{1,25}(\\.[0-9]{0,25})?([eE][+-]?[0-9]{1,3})?",
     ]
 }
@@ -142,6 +155,21 @@ fn every_length_and_every_place_of_the_point_is_read_alike() {
                 assert_eq!(read_one(token), Some(token.parse::<f64>().unwrap().to_bits()), "{token}");
             }
         }
+    }
+}
+
+#[test]
+fn a_decimal_in_the_middle_of_two_doubles_goes_to_the_even_one() {
+    for (token, value) in [
+        ("9007199254740993", 9_007_199_254_740_992.0),
+        ("9007199254740995.0", 9_007_199_254_740_996.0),
+        ("4503599627370496.5", 4_503_599_627_370_496.0),
+        ("-4503599627370497.5", -4_503_599_627_370_498.0),
+        ("1125899906842624.125", 1_125_899_906_842_624.0),
+        ("1125899906842624.126", 1_125_899_906_842_624.25),
+        ("0.0000000000000000000000000", 0.0),
+    ] {
+        assert_eq!(read_one(token), Some(f64::to_bits(value)), "{token}");
     }
 }
 
