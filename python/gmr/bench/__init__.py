@@ -5,7 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
-from gmr.bench import amc_text, bvh_text, forward_kinematics, gmr_files, operations, roots, search, trials
+from gmr.bench import (
+    amc_text,
+    bvh_text,
+    forward_kinematics,
+    gmr_files,
+    operations,
+    roots,
+    search,
+    skinning,
+    trials,
+)
 from gmr.bench.harness import Contest, Row, one_core, run_contest
 from gmr.bench.inputs import LARGE_FRAME_COUNT
 
@@ -23,6 +33,8 @@ CLAIMS: Final[dict[str, Callable[[int], Iterator[Contest]]]] = {
     "fk-frames": forward_kinematics.frame_cost,
     "roots": roots.roots,
     "operations": operations.operations,
+    "skin-linear": skinning.linear,
+    "skin-dual": skinning.dual_quaternions,
     "search": search.near,
     "search-hard": search.hard,
     "search-rows": search.growth,
