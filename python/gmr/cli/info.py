@@ -40,6 +40,7 @@ def info(
     positions: str,
     asf: str | None,
     amc_fps: float | None,
+    animation: str | None,
     strict: bool,
 ) -> int:
     """Tell what is in motion files, and what is odd about them.
@@ -67,7 +68,7 @@ def info(
         for path in watched:
             with failures.of(str(path)):
                 options = {"strict": strict, "positions": positions, "asf": asf, "fps": amc_fps}
-                _describe(path, found, recordings, relation, **options)
+                _describe(path, found, recordings, relation, animation=animation, **options)
     if as_json:
         alone = len(files) == 1 and not Path(files[0]).is_dir()
         click.echo(_as_json(found, recordings, failures.errors, alone))
