@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     )
     from gmr.evaluation.evaluate import evaluate
     from gmr.evaluation.result import Evaluation
-    from gmr.formats import read, read_character, read_folder, read_markers, write
+    from gmr.formats import read, read_character, read_folder, read_markers, write, write_character
     from gmr.kinematics import forward_kinematics
     from gmr.markers.recording import Markers
     from gmr.motion import Motion
@@ -59,6 +59,7 @@ __all__ = [
     "read_markers",
     "skinning",
     "write",
+    "write_character",
 ]
 
 # All is imported when first used: `gmr --help` answers at once, and an instruction set that this machine has
@@ -88,6 +89,7 @@ _HOMES = {
     "read_folder": "gmr.formats",
     "read_markers": "gmr.formats",
     "write": "gmr.formats",
+    "write_character": "gmr.formats",
 }
 _MODULES = frozenset({"editing", "evaluation", "markers", "matching", "skinning"})
 

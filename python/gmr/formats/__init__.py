@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gmr.formats.characters import read_character
+from gmr.formats.characters import read_character, write_character
 from gmr.formats.folder import Takes, motion_files, read_folder
 from gmr.formats.reading import read, read_markers
 from gmr.formats.registry import FORMATS, Format
@@ -18,4 +18,5 @@ __all__ = [
     "read_folder",
     "read_markers",
     "write",
+    "write_character",
 ]

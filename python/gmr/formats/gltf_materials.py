@@ -59,7 +59,7 @@ class _Materials:
                 tuple[float, float, float], self._factor(entry.emissiveFactor, 3, f"{place}.emissiveFactor")
             ),
             alpha_mode=cast(Literal["OPAQUE", "MASK", "BLEND"], mode),
-            alpha_cutoff=0.5 if entry.alphaCutoff is None else entry.alphaCutoff,
+            alpha_cutoff=0.5 if entry.alphaCutoff is None or mode != "MASK" else entry.alphaCutoff,
             double_sided=bool(entry.doubleSided),
             normal_texture=self._use(entry.normalTexture, place, "scale"),
             occlusion_texture=self._use(entry.occlusionTexture, place, "strength"),
