@@ -54,7 +54,7 @@ def write_character(
     """Write a character as a .glb file: nodes, skins, materials, textures and animations.
 
     The file is written beside its place and renamed when it is whole. Joints, weights, materials and the keys
-    of animations read back as they are.
+    of animations read back as they are, parts in the order of their nodes.
 
     Args:
         character: its own animations are written where no poses are given.

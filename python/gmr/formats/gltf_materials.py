@@ -24,19 +24,26 @@ def read_materials(document: Document, buffers: Buffers) -> tuple[tuple[Material
         FormatError: an index is out of range, or a factor has the wrong number of components.
     """
     reader = _Materials(document, buffers, {}, [])
+    reader.read_textures()
     materials = tuple(reader.material(entry, k) for k, entry in enumerate(document.content.materials))
     return materials, tuple(reader.textures)
 
 
 @dataclass
 class _Materials:
-    """Reads materials; textures are numbered as they are met."""
+    """Reads materials; textures are numbered without those whose pictures are not there."""
 
     document: Document
     buffers: Buffers
     places: dict[int, int | None]
     """Texture of the file -> texture of the character, None where its picture is not there."""
     textures: list[Texture]
+
+    def read_textures(self) -> None:
+        for index in range(len(self.document.content.textures)):
+            texture = self._texture(index)
+            self.places[index] = None if texture is None else len(self.textures)
+            self.textures += [] if texture is None else [texture]
 
     def material(self, entry: Any, k: int) -> Material:
         place = f"materials[{k}]"
@@ -77,10 +84,6 @@ class _Materials:
         if entry is None:
             return None
         self.document.at("textures", entry.index, place)
-        if entry.index not in self.places:
-            texture = self._texture(entry.index)
-            self.places[entry.index] = None if texture is None else len(self.textures)
-            self.textures += [] if texture is None else [texture]
         texture_place = self.places[entry.index]
         if texture_place is None:
             return None

@@ -52,7 +52,7 @@ def posed_animation(
         frame, joint = np.argwhere(~np.isfinite(found))[0, :2]
         raise GmrError(f"pose {frame} of joint '{character.joint_names[joint]}' is not finite; mend it first")
     nodes = as_transforms(character.nodes, character.joints.tolist())
-    times: Array = np.arange(len(found)) * float(frame_time)
+    times = np.arange(len(found), dtype=np.float64) * frame_time
     channels: list[Channel] = []
     for joint, node in enumerate(character.joints.tolist()):
         local = _local(character, found, joint)
@@ -101,8 +101,8 @@ def _local(character: Character, poses: Array, joint: int) -> Array:
     if error.max() > _SHEAR:
         raise GmrError(
             f"joint '{character.joint_names[joint]}' would be sheared in frame {int(error.argmax())}, "
-            "for what it hangs on is scaled by different amounts along its axes; glTF nodes have translation, "
-            "rotation and scale alone. Take the scale out of the poses"
+            "for what it hangs on is scaled by different amounts along its axes; glTF nodes have "
+            "a translation, a rotation and a scale alone. Take the scale out of the poses"
         )
     return local
 
