@@ -12,8 +12,8 @@ __all__ = ["Normalised", "normalised_weights"]
 _ROUNDING = 1e-7
 """How far the sum may miss 1 for each weight that is not 0; less than what the glTF-Validator lets pass."""
 
-_NOTICED = 1e-3
-"""How far the sum may miss 1 by rounding to few bits; more is worth telling."""
+_NOTICED = 1e-2
+"""How far the sum may miss 1 by rounding to bytes; more is worth telling."""
 
 
 class Normalised(NamedTuple):
@@ -22,7 +22,7 @@ class Normalised(NamedTuple):
     weights: NDArray[np.float32]
     """(V, K) that sum to 1."""
     off: int
-    """Vertices whose sum missed 1 by more than a thousandth."""
+    """Vertices whose sum missed 1 by more than a hundredth."""
     least: float
     """The least sum among those; 1 where there are none."""
     empty: NDArray[np.intp]
