@@ -4,18 +4,13 @@ from __future__ import annotations
 
 import base64
 import binascii
-import stat
-from typing import Final
 from urllib.parse import unquote, unquote_to_bytes, urlsplit
 
-from gmr.errors import FormatError
+from gmr.formats.beside import NotBesideError, read_beside
 from gmr.formats.gltf_document import Document
 from gmr.formats.text import named
 
 __all__ = ["Buffers"]
-
-_MOST_FILE: Final = 1 << 31
-"""Bytes of a file beside at most."""
 
 
 class Buffers:
@@ -102,22 +97,11 @@ class Buffers:
             self.document.wrong(f"{place} is no base64: {error}; copy the file again, whole")
 
     def _beside(self, uri: str, place: str) -> bytes:
-        document = self.document
-        if document.folder is None:
-            document.wrong(f"{place} is in the file {named(uri)}; read from a path, so that it can be found")
-        path = unquote(uri)
-        if "\0" in path or urlsplit(uri).scheme or path.startswith(("/", "\\")):
-            document.wrong(f"{place} is at {named(uri)}; only files beside are read. Write a relative path")
-        target = document.folder / path
+        if urlsplit(uri).scheme:
+            self.document.wrong(
+                f"{place} is at {named(uri)}; only files beside are read. Write a relative path"
+            )
         try:
-            if not target.resolve().is_relative_to(document.folder.resolve()):
-                document.wrong(f"{place} is at {named(uri)}, outside of the folder; put it beside the file")
-            status = target.stat()
-            if not stat.S_ISREG(status.st_mode) or status.st_size > _MOST_FILE:
-                document.wrong(f"{place} is at {named(uri)}, which is no file, or one of more than 2 GB")
-            return target.read_bytes()
-        except (OSError, ValueError) as error:
-            if isinstance(error, FormatError):
-                raise
-            why = error.strerror if isinstance(error, OSError) else str(error)
-            document.wrong(f"{place} is in the file {named(uri)}, which cannot be read: {why}; put it there")
+            return read_beside(self.document.folder, unquote(uri))
+        except NotBesideError as error:
+            self.document.wrong(f"{place} is {error}")

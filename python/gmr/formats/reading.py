@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Literal
 
@@ -119,7 +120,7 @@ def read_with(
         FormatError: as :func:`read`; or ``all_taken`` is asked for and the format does not know an option.
     """
     chosen = None if format is None else named_format(format)
-    name, data = contents(source, chosen)
+    name, data = contents(source, lambda path: (chosen or format_of_file(path)).is_mapped)
     if not data:
         raise FormatError("the file is empty, it holds no motion; export it again", file=name)
     if chosen is None:
@@ -137,8 +138,14 @@ def _taken(chosen: Format, options: dict[str, Any], name: str | None, all_taken:
     return {option: value for option, value in options.items() if option in chosen.options}
 
 
-def contents(source: Source, chosen: Format | None = None) -> tuple[str | None, bytes | memoryview]:
-    """What the source is called, and all its bytes, or its map in memory where the format takes that."""
+def contents(
+    source: Source, is_mapped: Callable[[str], bool] = lambda path: False
+) -> tuple[str | None, bytes | memoryview]:
+    """What the source is called, and all its bytes, or its map in memory where ``is_mapped`` of its path.
+
+    Raises:
+        FormatError: the file is missing or cannot be read.
+    """
     if isinstance(source, bytes | bytearray | memoryview):
         return None, bytes(source)
     if isinstance(source, str | os.PathLike):
@@ -147,9 +154,7 @@ def contents(source: Source, chosen: Format | None = None) -> tuple[str | None, 
         path = Path(source)
         if not str(source):
             raise FormatError("an empty text names no file; give a path", file="''")
-        if chosen is None and path.is_file():
-            chosen = format_of_file(str(path))
-        return str(path), _file_contents(path, chosen is not None and chosen.is_mapped)
+        return str(path), _file_contents(path, path.is_file() and is_mapped(str(path)))
     if not hasattr(source, "read"):
         raise TypeError(f"a motion is read from a path, bytes or an open file, not from {source!r:.60}")
     data = source.read()

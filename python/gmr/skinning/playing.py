@@ -16,7 +16,7 @@ __all__ = ["world_matrices"]
 
 Array = NDArray[np.float64]
 
-_MOST_MATRICES = 1 << 22
+_MOST_MATRICES = 1 << 20
 """Matrices that any animation may be sampled to; one with many keys may be sampled to more."""
 _PER_KEY = 64
 """Matrices for each key that the animation has."""
