@@ -13,9 +13,9 @@ from scipy.spatial.transform import Rotation
 
 import gmr
 from gltf_files import FACES, POINTS, WEIGHTS, arm, inverse_binds
-from gmr import Character, FormatWarning
+from gmr import Character, FormatWarning, GmrError
 from gmr.quaternions import matrices
-from lbs_oracle import blended, json_of, world_matrix
+from lbs_oracle import OracleSkin, json_of, world_matrix
 
 GMR_DATA = Path(os.environ.get("GMR_DATA", "/nowhere")) / "gltf"
 RIGGED = Path(__file__).parent / "data" / "rigged_simple.gltf"
@@ -29,7 +29,7 @@ def _oracle_skins(monkeypatch: pytest.MonkeyPatch) -> None:
     import types
 
     module: Any = types.ModuleType("gmr.skinning.blending")
-    module.blend = blended
+    module.Skin = OracleSkin
     monkeypatch.setitem(sys.modules, "gmr.skinning.blending", module)
 
 
@@ -81,8 +81,25 @@ def test_skinning_ignores_the_node_of_the_mesh_and_heeds_what_the_joints_hang_on
             matrix = world[k] @ inverse_binds()[k]
             expected[vertex] += WEIGHTS[vertex, k] * (matrix @ [*POINTS[vertex], 1])[:3]
     character = gmr.read_character(file.glb())
-    assert np.allclose(character.skin(character.rest_pose()), expected, rtol=0, atol=1e-6)
-    assert character.skin(character.rest_pose()[None]).shape == (1, 6, 3)
+    assert np.allclose(character.skin(character.rest_pose())[0], expected, rtol=0, atol=1e-6)
+    assert character.skin(np.tile(character.rest_pose(), (4, 1, 1, 1))).shape == (4, 6, 3)
+
+
+def test_poses_of_another_shape_and_normals_that_are_not_there_are_refused() -> None:
+    character = gmr.read_character(arm().glb())
+    with pytest.raises(GmrError, match=r"must be \(frames, 3, 4, 4\)"):
+        character.skin(np.zeros((2, 4, 4, 4)))
+    with pytest.raises(GmrError, match="parts without normals"):
+        character.skin(character.rest_pose(), normals=True)
+
+
+def test_normals_turn_with_what_carries_them() -> None:
+    character = gmr.read_character(RIGGED)
+    places, normals = character.skin(character.animation()[[0, 20]], normals=True)
+    a, b, c = (places[1][character.faces[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    sides = (across[:, None] * normals[1][character.faces]).sum(axis=2)
+    assert (sides > -0.1 * np.linalg.norm(across, axis=1)[:, None]).mean() > 0.99
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda path: path.stem)

@@ -16,7 +16,7 @@ import pytest
 
 import gmr
 from gltf_files import FACES, JOINTS, POINTS, WEIGHTS, Gltf, arm, turn
-from gmr import Character, FormatError, FormatWarning
+from gmr import Character, FormatError, FormatWarning, MissingExtraError
 from random_characters import png
 
 
@@ -600,3 +600,11 @@ def test_an_animation_that_would_last_for_ages_is_refused() -> None:
     file.content["animations"][0]["samplers"][0]["input"] = file.array([0.0, 1, 2, 1e6])
     with pytest.raises(FormatError, match="check its times"):
         gmr.read(file.glb())
+
+
+def test_without_pygltflib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    import sys
+
+    monkeypatch.setitem(sys.modules, "pygltflib", None)
+    with pytest.raises(MissingExtraError, match=r"pip install 'gmr-motion\[gltf\]'"):
+        gmr.read_character(arm().glb())

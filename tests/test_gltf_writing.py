@@ -161,6 +161,14 @@ def test_a_picture_that_glb_cannot_hold_is_left_out_with_a_warning() -> None:
         glb_pieces(character)
 
 
+def test_factors_outside_of_0_to_1_are_cut_with_a_warning() -> None:
+    character = gmr.read_character(arm().glb())
+    bright = replace(character.materials[0], emissive=(3.0, 0.5, 0.0))
+    with pytest.warns(FormatWarning, match=r"emissive \(3.0, 0.5, 0.0\); it is cut"):
+        again = written(replace(character, materials=(bright,)))
+    assert again.materials[0].emissive == (1, 0.5, 0)
+
+
 def odd_character() -> Character:
     """What a .glb cannot hold as it is: normals without length, weights at one joint twice, two roots."""
     arm_character = gmr.read_character(arm().glb())

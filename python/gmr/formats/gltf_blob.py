@@ -38,17 +38,14 @@ class Blob:
         return b"".join(self._pieces)
 
     def view(self, data: bytes, target: int | None = None) -> int:
-        """The view of these bytes."""
-        key = (data, target)
-        if key not in self._known:
-            self._known[key] = len(self.views)
-            self.views.append(
-                self.model.BufferView(buffer=0, byteOffset=self._size, byteLength=len(data), target=target)
-            )
-            padding = b"\0" * (-len(data) % 4)
-            self._pieces += [data, padding]
-            self._size += len(data) + len(padding)
-        return self._known[key]
+        """A view of these bytes, for one accessor or picture."""
+        self.views.append(
+            self.model.BufferView(buffer=0, byteOffset=self._size, byteLength=len(data), target=target)
+        )
+        padding = b"\0" * (-len(data) % 4)
+        self._pieces += [data, padding]
+        self._size += len(data) + len(padding)
+        return len(self.views) - 1
 
     def array(self, array: NDArray[Any], target: int | None = None, *, bounds: bool = False) -> int:
         """The accessor of (count, ...) values, matrices as (count, rows, columns).

@@ -151,7 +151,8 @@ def _made(found: Any, hint: Any, place: str) -> Any:
     if not isinstance(found, dict):
         raise _WrongTypeError(place, found, "an object")
     if origin is dict:
-        return {name: value for name, value in found.items() if name in _UNDERSTOOD}
+        known = {name: value for name, value in found.items() if name in _UNDERSTOOD}
+        return {name: value for name, value in known.items() if isinstance(value, dict)}
     # What is left are the attributes of a primitive: whatever name -> accessor.
     return {name: _plain(value, int, f"{place}.{name}") for name, value in found.items()}
 

@@ -105,9 +105,9 @@ class MaterialWriter:
         model = self.model
         self.extensions.update(material.extensions)
         surface = model.PbrMetallicRoughness(
-            baseColorFactor=list(material.base_color),
-            metallicFactor=material.metallic,
-            roughnessFactor=material.roughness,
+            baseColorFactor=_parts(material, "base_color"),
+            metallicFactor=_parts(material, "metallic")[0],
+            roughnessFactor=_parts(material, "roughness")[0],
             baseColorTexture=self._use(material.base_color_texture, model.TextureInfo),
             metallicRoughnessTexture=self._use(material.metallic_roughness_texture, model.TextureInfo),
         )
@@ -117,7 +117,7 @@ class MaterialWriter:
             normalTexture=self._use(material.normal_texture, model.NormalMaterialTexture, "scale"),
             occlusionTexture=self._use(material.occlusion_texture, model.OcclusionTextureInfo, "strength"),
             emissiveTexture=self._use(material.emissive_texture, model.TextureInfo),
-            emissiveFactor=list(material.emissive),
+            emissiveFactor=_parts(material, "emissive"),
             alphaMode=material.alpha_mode,
             alphaCutoff=material.alpha_cutoff if material.alpha_mode == "MASK" else None,
             doubleSided=material.double_sided,
@@ -129,5 +129,17 @@ class MaterialWriter:
         if use is None or place is None:
             return None
         self.extensions.update(use.extensions)
-        more = {} if strength is None else {strength: use.strength}
+        value = min(max(use.strength, 0.0), 1.0) if strength == "strength" else use.strength
+        more = {} if strength is None else {strength: value}
         return kind(index=place, texCoord=use.coordinates, extensions=dict(use.extensions), **more)
+
+
+def _parts(material: Material, key: str) -> list[float]:
+    """The components of a factor, from 0 to 1 as the standard asks."""
+    value = getattr(material, key)
+    found = list(value) if isinstance(value, tuple) else [value]
+    cut = [min(max(component, 0.0), 1.0) for component in found]
+    if cut != found:
+        what = f"material '{material.name}' has the {key.replace('_', ' ')} {value}; it is cut to 0 to 1"
+        warnings.warn(FormatWarning(f"{what}."), stacklevel=8)
+    return cut

@@ -84,6 +84,8 @@ class _Materials:
         if entry is None:
             return None
         self.document.at("textures", entry.index, place)
+        if entry.texCoord is not None and entry.texCoord < 0:
+            self.document.wrong(f"{place} has the texCoord {entry.texCoord}; it must be 0 or more")
         texture_place = self.places[entry.index]
         if texture_place is None:
             return None

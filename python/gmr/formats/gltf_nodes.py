@@ -15,6 +15,8 @@ __all__ = ["read_nodes", "scene_name", "scene_nodes"]
 _UNIT = 1e-6
 """How far a quaternion may be from length 1 and be left as it is."""
 _NOTICED = 1e-3
+_LARGEST = 1e38
+"""Beyond it single precision, in which vertices are moved, has no numbers."""
 
 
 def read_nodes(document: Document) -> Nodes:
@@ -94,7 +96,7 @@ def _matrix(document: Document, found: list[float], place: str) -> NDArray[np.fl
     """(4, 4) from 16 numbers, column after column."""
     if len(found) != 16:
         document.wrong(f"{place}.matrix has {len(found)} numbers; it must have 16")
-    matrix = np.array(found, np.float64).reshape(4, 4).T
+    matrix = _single(document, found, f"{place}.matrix").reshape(4, 4).T
     if not np.allclose(matrix[3], (0, 0, 0, 1), rtol=0, atol=_UNIT):
         document.wrong(f"{place}.matrix has the last row {matrix[3].tolist()}; it must be 0 0 0 1")
     return matrix
@@ -107,4 +109,11 @@ def _numbers(
         return np.array(default)
     if len(found) != len(default):
         document.wrong(f"{place} has {len(found)} numbers; it must have {len(default)}")
+    return _single(document, found, place)
+
+
+def _single(document: Document, found: list[float], place: str) -> NDArray[np.float64]:
+    """The numbers, if single precision can hold them."""
+    if max(map(abs, found)) > _LARGEST:
+        document.wrong(f"{place} has the number {max(found, key=abs):g}; export the file again")
     return np.array(found, np.float64)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +25,10 @@ from gmr.skinning.part import Part
 from gmr.skinning.playing import world_matrices
 
 __all__ = ["Character", "Part"]
+
+Method = Literal["lbs", "dqbs", "cor"]
+Hemisphere = Literal["pivot", "running"]
+FloatArray = NDArray[np.float32]
 
 _SHOWN = 8
 """Names that an error lists; the others it counts."""
@@ -150,34 +154,58 @@ class Character:
         each = [part.faces + start for part, start in zip(self.skinned_parts, counts[:-1], strict=True)]
         return frozen(np.concatenate([np.zeros((0, 3), np.int32), *each]), np.int32)
 
+    @overload
     def skin(
         self,
         pose_matrices: ArrayLike,
-        method: Literal["lbs", "dqbs", "cor"] = "lbs",
+        method: Method = ...,
         *,
+        hemisphere: Hemisphere = ...,
+        normals: Literal[False] = ...,
+        out: FloatArray | None = ...,
+        threads: int | None = ...,
+    ) -> FloatArray: ...
+
+    @overload
+    def skin(
+        self,
+        pose_matrices: ArrayLike,
+        method: Method = ...,
+        *,
+        hemisphere: Hemisphere = ...,
+        normals: Literal[True],
+        out: FloatArray | None = ...,
+        threads: int | None = ...,
+    ) -> tuple[FloatArray, FloatArray]: ...
+
+    def skin(
+        self,
+        pose_matrices: ArrayLike,
+        method: Method = "lbs",
+        *,
+        hemisphere: Hemisphere = "pivot",
         normals: bool = False,
-        threads: int = 1,
-        **options: Any,
-    ) -> Any:
-        """The vertices of all skinned parts in given poses.
+        out: FloatArray | None = None,
+        threads: int | None = None,
+    ) -> FloatArray | tuple[FloatArray, FloatArray]:
+        """The vertices of all skinned parts in given poses; see :meth:`gmr.skinning.Skin.blend`.
 
         Args:
             pose_matrices: (F, J, 4, 4) world matrices of the joints, or (J, 4, 4) for one pose.
-            method: "lbs", "dqbs" or "cor"; see :func:`gmr.skinning.blend`.
+            method: "lbs", "dqbs" or "cor".
+            hemisphere: for "dqbs": "pivot" or "running".
             normals: give them too.
-            threads: as in :func:`gmr.skinning.blend`.
-            **options: further ones of :func:`gmr.skinning.blend`, such as ``hemisphere``.
+            out: (F, V, 3) C-contiguous float32 array to write the vertices into.
+            threads: 0: all cores; None: all where it pays.
 
         Returns:
-            (F, V, 3) float32 metres in the world, or (V, 3) for one pose; V runs over the skinned parts in
-            order. With ``normals`` a pair of such arrays.
+            (F, V, 3) float32 metres in the world, F = 1 for one pose; V runs over the skinned parts in order.
+            With ``normals`` a pair of such arrays.
 
         Raises:
             GmrError: the matrices have another shape, no part is skinned, or normals are asked for and a
                 part has none.
         """
-        from gmr.skinning.blending import blend  # type: ignore[import-not-found, unused-ignore]
-
         poses = np.asarray(pose_matrices, np.float64)
         joint_count = len(self.joints)
         if poses.ndim not in (3, 4) or poses.shape[-3:] != (joint_count, 4, 4):
@@ -185,24 +213,25 @@ class Character:
                 f"pose matrices of the shape {poses.shape} are given; "
                 f"they must be (frames, {joint_count}, 4, 4), or ({joint_count}, 4, 4) for one pose"
             )
-        merged = self.merged
-        if normals and merged.normals is None:
+        if normals and self.merged.normals is None:
             raise GmrError(f"character '{self.name}' has parts without normals, so these cannot be skinned")
         frames = poses.reshape(-1, 1, joint_count, 4, 4)
-        transforms = (frames @ merged.inverse_binds).reshape(len(frames), -1, 4, 4)
-        found = blend(
-            merged.vertices,
-            merged.joints,
-            merged.weights,
-            transforms,
-            method=method,
-            normals=merged.normals if normals else None,
-            threads=threads,
-            **options,
+        transforms = (frames @ self.merged.inverse_binds).reshape(len(frames), -1, 4, 4)
+        found: Any = self._blending.blend(
+            transforms, method, hemisphere=hemisphere, normals=normals, out=out, threads=threads
         )
-        if poses.ndim == 4:
-            return found
-        return tuple(one[0] for one in found) if normals else found[0]
+        return found  # type: ignore[no-any-return]
+
+    @cached_property
+    def _blending(self) -> Any:
+        """The skinned parts as the kernels hold them: a :class:`gmr.skinning.Skin`, checked once."""
+        from gmr.skinning.blending import Skin  # type: ignore[import-not-found, unused-ignore]
+
+        merged = self.merged
+        count = len(self.joints) * len(merged.inverse_binds)
+        return Skin(
+            merged.vertices, merged.joints, merged.weights, count, normals=merged.normals, faces=self.faces
+        )
 
     @cached_property
     def merged(self) -> Merged:
