@@ -46,8 +46,8 @@ def turned(joints: Any, weights: Any, normals: Any, transforms: Any) -> NDArray[
     for k in range(joints.shape[1]):
         linear += weights[:, k, None, None] * transforms[:, joints[:, k], :3, :3]
     found = np.einsum("fvji,vj->fvi", np.linalg.inv(linear), normals)
-    found /= np.linalg.norm(found, axis=-1, keepdims=True)
-    return found.astype(np.float32)
+    unit = found / np.linalg.norm(found, axis=-1, keepdims=True)
+    return np.asarray(unit, np.float32)
 
 
 def node_matrix(node: dict[str, Any]) -> Array:

@@ -15,7 +15,8 @@ import gmr
 from gltf_files import Gltf, arm
 from gmr import Character, FormatError, FormatWarning, GmrError
 from gmr.formats.gltf_writer import glb_pieces
-from test_gltf_quirks import FORMS, lost_picture, morphs, quantised
+from test_gltf_quirks import FORMS, quantised
+from test_gltf_refusals import lost_picture, morphs
 
 FILES = [arm(), arm(), *(arm() for _ in FORMS)]
 for change, file in zip([quantised, morphs, *FORMS], FILES, strict=True):
