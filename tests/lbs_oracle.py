@@ -11,24 +11,6 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-class OracleSkin:
-    """What ``gmr.skinning.Skin`` is, blended linearly by the definition."""
-
-    def __init__(
-        self, vertices: Any, joints: Any, weights: Any, joint_count: int, *, normals: Any, faces: Any
-    ) -> None:
-        assert joints.max(initial=0) < joint_count
-        assert faces.max(initial=0) < len(vertices)
-        self.held = vertices, joints, weights
-        self.normals = normals
-
-    def blend(self, transforms: Any, method: str, *, normals: bool = False, **_: Any) -> Any:
-        """(F, V, 3) vertices, with ``normals`` a pair."""
-        assert method == "lbs"
-        places = blended(*self.held, transforms)
-        return (places, turned(*self.held[1:], self.normals, transforms)) if normals else places
-
-
 def blended(vertices: Any, joints: Any, weights: Any, transforms: Any) -> NDArray[np.float32]:
     """(F, V, 3) ``sum_i w_i E_i v``."""
     transforms = np.asarray(transforms, np.float64)
@@ -38,16 +20,6 @@ def blended(vertices: Any, joints: Any, weights: Any, transforms: Any) -> NDArra
         moved = np.einsum("fvij,vj->fvi", transforms[:, joints[:, k]], points)[..., :3]
         found += weights[:, k, None] * moved
     return found.astype(np.float32)
-
-
-def turned(joints: Any, weights: Any, normals: Any, transforms: Any) -> NDArray[np.float32]:
-    """(F, V, 3) normals of length 1, by the inverse transpose of the blended matrices."""
-    linear = np.zeros((len(transforms), len(normals), 3, 3))
-    for k in range(joints.shape[1]):
-        linear += weights[:, k, None, None] * transforms[:, joints[:, k], :3, :3]
-    found = np.einsum("fvji,vj->fvi", np.linalg.inv(linear), normals)
-    unit = found / np.linalg.norm(found, axis=-1, keepdims=True)
-    return np.asarray(unit, np.float32)
 
 
 def node_matrix(node: dict[str, Any]) -> Array:

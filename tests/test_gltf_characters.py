@@ -15,22 +15,12 @@ import gmr
 from gltf_files import FACES, POINTS, WEIGHTS, arm, inverse_binds
 from gmr import Character, FormatWarning, GmrError
 from gmr.quaternions import matrices
-from lbs_oracle import OracleSkin, json_of, world_matrix
+from gmr.skinning import Part
+from lbs_oracle import blended, json_of, world_matrix
 
 GMR_DATA = Path(os.environ.get("GMR_DATA", "/nowhere")) / "gltf"
 RIGGED = Path(__file__).parent / "data" / "rigged_simple.gltf"
 FILES = [RIGGED, *(GMR_DATA / name for name in ("cesium_man.gltf", "fox.glb"))]
-
-
-@pytest.fixture(autouse=True)
-def _oracle_skins(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The kernels are compared with their oracle elsewhere; here it stands in for them."""
-    import sys
-    import types
-
-    module: Any = types.ModuleType("gmr.skinning.blending")
-    module.Skin = OracleSkin
-    monkeypatch.setitem(sys.modules, "gmr.skinning.blending", module)
 
 
 def quietly(path: Path) -> Character:
@@ -83,6 +73,39 @@ def test_skinning_ignores_the_node_of_the_mesh_and_heeds_what_the_joints_hang_on
     character = gmr.read_character(file.glb())
     assert np.allclose(character.skin(character.rest_pose())[0], expected, rtol=0, atol=1e-6)
     assert character.skin(np.tile(character.rest_pose(), (4, 1, 1, 1))).shape == (4, 6, 3)
+
+
+def part_blended(part: Part, poses: Any) -> Any:
+    """The vertices of a part by the definition."""
+    assert part.inverse_bind is not None
+    return blended(part.vertices, part.joints, part.weights, poses @ part.inverse_bind)
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda path: path.stem)
+def test_skinning_a_real_file_is_what_the_standard_defines(file: Path) -> None:
+    character = quietly(file)
+    poses = character.animation()[::5]
+    part = character.parts[0]
+    expected = part_blended(part, poses)
+    extent = np.ptp(expected, axis=(0, 1)).max()
+    assert np.allclose(character.skin(poses), expected, rtol=0, atol=1e-6 * extent)
+    assert character.skin(poses, "dqbs").shape == expected.shape
+
+
+def test_parts_with_other_skins_are_skinned_in_order() -> None:
+    import random_characters
+
+    seen = 0
+    for seed in range(30):
+        character = random_characters.character(seed)
+        if not character.skinned_parts:
+            continue
+        poses = np.random.default_rng(seed).normal(size=(2, len(character.joints), 4, 4))
+        poses[:, :, 3] = (0, 0, 0, 1)
+        each = [part_blended(part, poses) for part in character.skinned_parts]
+        assert np.allclose(character.skin(poses), np.concatenate(each, axis=1), atol=1e-4)
+        seen += len(each) > 1
+    assert seen > 5
 
 
 def test_poses_of_another_shape_and_normals_that_are_not_there_are_refused() -> None:

@@ -111,6 +111,15 @@ def test_materials_come_with_their_pictures(tmp_path: Path) -> None:
     assert (texture.mime_type, texture.name, texture.wrap_s) == ("image/png", "skin colour", 33071)
 
 
+def test_several_libraries_in_a_line_and_one_with_a_blank_in_its_name(tmp_path: Path) -> None:
+    for name, color in (("a.mtl", "1 0 0"), ("b.mtl", "0 1 0"), ("c d.mtl", "0 0 1")):
+        (tmp_path / name).write_text(f"newmtl {name[0]}\nKd {color}\n")
+    uses = "".join(f"usemtl {name}\nf 1 2 3\n" for name in "abc")
+    text = f"mtllib a.mtl b.mtl\nmtllib c d.mtl\n{SQUARE}{uses}"
+    found = read_obj(text.encode(), name=str(tmp_path / "a.obj"))
+    assert [material.base_color[:3] for material in found.materials] == [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
+
+
 def test_a_picture_from_another_machine_is_looked_for_beside(tmp_path: Path) -> None:
     (tmp_path / "a.mtl").write_text("newmtl skin\nmap_Kd C:\\work\\skin.png\n")
     (tmp_path / "skin.png").write_bytes(png(3))

@@ -131,7 +131,8 @@ class _Lines:
         elif key == "usemtl":
             self._material = " ".join(values)
         elif key == "mtllib":
-            self.libraries.append(" ".join(values))
+            several = all(value.lower().endswith(".mtl") for value in values)
+            self.libraries += values if several else [" ".join(values)]
         elif key not in _QUIET:
             self.left_out[key] = number
 

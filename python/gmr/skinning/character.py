@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal, NamedTuple, overload
+from typing import Literal, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,7 @@ from gmr.errors import GmrError, SkeletonError
 from gmr.listing import quoted
 from gmr.skeleton import Skeleton
 from gmr.skinning.appearance import Material, Texture
+from gmr.skinning.blending import Hemisphere, Method, Skin
 from gmr.skinning.keyframes import Animation
 from gmr.skinning.nodes import Nodes
 from gmr.skinning.part import Part
@@ -26,8 +27,6 @@ from gmr.skinning.playing import world_matrices
 
 __all__ = ["Character", "Part"]
 
-Method = Literal["lbs", "dqbs", "cor"]
-Hemisphere = Literal["pivot", "running"]
 FloatArray = NDArray[np.float32]
 
 _SHOWN = 8
@@ -217,16 +216,14 @@ class Character:
             raise GmrError(f"character '{self.name}' has parts without normals, so these cannot be skinned")
         frames = poses.reshape(-1, 1, joint_count, 4, 4)
         transforms = (frames @ self.merged.inverse_binds).reshape(len(frames), -1, 4, 4)
-        found: Any = self._blending.blend(
-            transforms, method, hemisphere=hemisphere, normals=normals, out=out, threads=threads
-        )
-        return found  # type: ignore[no-any-return]
+        blend = self._blending.blend
+        if normals:
+            return blend(transforms, method, hemisphere=hemisphere, normals=True, out=out, threads=threads)
+        return blend(transforms, method, hemisphere=hemisphere, out=out, threads=threads)
 
     @cached_property
-    def _blending(self) -> Any:
+    def _blending(self) -> Skin:
         """The skinned parts as the kernels hold them: a :class:`gmr.skinning.Skin`, checked once."""
-        from gmr.skinning.blending import Skin  # type: ignore[import-not-found, unused-ignore]
-
         merged = self.merged
         count = len(self.joints) * len(merged.inverse_binds)
         return Skin(
