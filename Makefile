@@ -1,8 +1,9 @@
-# Two commands do all the set-up: `make demo` and `make test`. All they install goes into .venv/ and target/.
+# Two commands do all the set-up: `make demo` and `make test`. All they install goes into .venv/, .node/ and target/.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 REPORT ?= gmr-demo/report.html
+VALIDATOR := gltf-validator@2.0.0-dev.3.10
 # maturin lies in .venv/ already, so the build needs no environment of its own.
 INSTALL := . $(BIN)/activate && python -m pip install --quiet --no-build-isolation
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
@@ -46,7 +47,7 @@ smoke:
 	$(BIN)/gmr bench --smoke
 
 clean: ## Remove all that make has made
-	rm -rf $(VENV) target gmr-demo
+	rm -rf $(VENV) .node target gmr-demo
 
 help:
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -67,6 +68,8 @@ $(VENV)/.gmr: $(VENV)/.tools $(SOURCES)
 $(VENV)/.develop: $(VENV)/.gmr
 	@echo "Installing what tests and benchmarks need ..."
 	@$(INSTALL) --editable ".[report,bench,dev]"
+	@if command -v npm >/dev/null; then npm install --silent --no-audit --no-fund --no-save --prefix .node $(VALIDATOR); \
+	else echo "npm is missing: written glTF files will not be shown to the Khronos glTF-Validator."; fi
 	@touch $@
 
 check-machine:

@@ -30,7 +30,7 @@ def pages_with(language: str) -> list[Path]:
 
 @pytest.fixture
 def reader_folder(tmp_path: Path) -> Path:
-    """What the documentation assumes: walk.bvh, walk.c3d, 07_01.amc, 07.asf, and a few clips in takes/."""
+    """What the documentation assumes: walk.bvh, walk.c3d, figure.gltf, 07_01.amc, 07.asf, clips in takes/."""
     takes = tmp_path / "takes"
     takes.mkdir()
     for clip in ("02_01", "07_01", "07_12", "08_01", "09_01", "09_02"):
@@ -38,6 +38,7 @@ def reader_folder(tmp_path: Path) -> Path:
     shutil.copy(demo_folder() / "07_01.bvh", tmp_path / "walk.bvh")
     for file in ("07.asf", "07_01.amc"):
         shutil.copy(ROOT / "tests" / "data" / "amc" / file, tmp_path)
+    shutil.copy(ROOT / "tests" / "data" / "rigged_simple.gltf", tmp_path / "figure.gltf")
     recorded(tmp_path / "walk.c3d", noisy(worn(), 0.5))
     return tmp_path
 

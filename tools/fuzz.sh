@@ -7,10 +7,11 @@ limits=(-max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024)
 
 cargo fuzz --version >/dev/null 2>&1 || { echo "cargo-fuzz is missing: run 'cargo install cargo-fuzz' (and 'rustup toolchain install nightly')." >&2; exit 1; }
 .venv/bin/python -c 'import atheris' 2>/dev/null || .venv/bin/python -m pip install --quiet atheris
-mkdir -p fuzz/corpus/{bvh_reader,amc_reader,gmr_text,gmr_binary,parse_rows,format_rows,bvh_bytes,amc_frames}
+mkdir -p fuzz/corpus/{bvh_reader,amc_reader,gltf,gmr_text,gmr_binary,parse_rows,format_rows,bvh_bytes,amc_frames}
 
 .venv/bin/python fuzz/bvh_reader.py -dict=fuzz/bvh.dict "${limits[@]}" -max_len=4096 fuzz/corpus/bvh_reader fuzz/seeds/bvh
 .venv/bin/python fuzz/amc_reader.py -dict=fuzz/amc.dict "${limits[@]}" -max_len=4096 fuzz/corpus/amc_reader fuzz/seeds/amc
+.venv/bin/python fuzz/gltf_reader.py -dict=fuzz/gltf.dict "${limits[@]}" -max_len=12000 fuzz/corpus/gltf fuzz/seeds/gltf
 for form in text binary; do
     .venv/bin/python "fuzz/gmr_${form}_reader.py" -dict=fuzz/gmr.dict "${limits[@]}" -max_len=4096 "fuzz/corpus/gmr_$form" tests/data/gmr/valid tests/data/gmr/invalid
 done

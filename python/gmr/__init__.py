@@ -22,15 +22,17 @@ if TYPE_CHECKING:
     )
     from gmr.evaluation.evaluate import evaluate
     from gmr.evaluation.result import Evaluation
-    from gmr.formats import read, read_folder, read_markers, write
+    from gmr.formats import read, read_character, read_folder, read_markers, write, write_character
     from gmr.kinematics import forward_kinematics
     from gmr.markers.recording import Markers
     from gmr.motion import Motion
     from gmr.skeleton import Skeleton
+    from gmr.skinning.character import Character
 
 __all__ = [
     "Bones",
     "ChannelLayout",
+    "Character",
     "DatasetError",
     "Evaluation",
     "FormatError",
@@ -52,10 +54,12 @@ __all__ = [
     "markers",
     "matching",
     "read",
+    "read_character",
     "read_folder",
     "read_markers",
     "skinning",
     "write",
+    "write_character",
 ]
 
 # All is imported when first used: `gmr --help` answers at once, and an instruction set that this machine has
@@ -63,6 +67,7 @@ __all__ = [
 _HOMES = {
     "Bones": "gmr.bone_tails",
     "ChannelLayout": "gmr.channels",
+    "Character": "gmr.skinning.character",
     "DatasetError": "gmr.errors",
     "Evaluation": "gmr.evaluation.result",
     "FormatError": "gmr.errors",
@@ -80,9 +85,11 @@ _HOMES = {
     "evaluate": "gmr.evaluation.evaluate",
     "forward_kinematics": "gmr.kinematics",
     "read": "gmr.formats",
+    "read_character": "gmr.formats",
     "read_folder": "gmr.formats",
     "read_markers": "gmr.formats",
     "write": "gmr.formats",
+    "write_character": "gmr.formats",
 }
 _MODULES = frozenset({"editing", "evaluation", "markers", "matching", "skinning"})
 

@@ -137,7 +137,8 @@ class Rate(click.ParamType[float]):
 
 
 def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Options of a command that reads files: ``positions``, ``asf``, ``amc_fps`` and ``strict``."""
+    """Options of a command that reads files: ``positions``, ``asf``, ``amc_fps``, ``animation`` and
+    ``strict``."""
     options = (
         click.option(
             "--positions", type=click.Choice(["replace", "add"]), default="replace", show_default=True,
@@ -145,6 +146,7 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
         ),
         click.option("--asf", type=click.Path(), help="AMC: the skeleton, where it is not beside."),
         click.option("--amc-fps", type=Rate(), help="AMC: frames a second, where it does not say [120]."),
+        click.option("--animation", help="glTF: the name of the animation; the first otherwise."),
         click.option("--strict", is_flag=True, help="Refuse what is otherwise read with a note."),
     )  # fmt: skip
     for option in reversed(options):
@@ -197,7 +199,10 @@ def read_input(path: Path | str, **options: Any) -> Motion:
 
     strict = options.pop("strict", False)
     given = given_options(
-        options.pop("positions", "replace"), options.pop("asf", None), options.pop("fps", None)
+        options.pop("positions", "replace"),
+        options.pop("asf", None),
+        options.pop("fps", None),
+        options.pop("animation", None),
     )
     if path == STDIO:
         return read_with(sys.stdin.buffer, given, strict=strict).with_name("<stdin>")

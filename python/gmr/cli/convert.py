@@ -110,6 +110,7 @@ def convert(
     positions: str,
     asf: str | None,
     amc_fps: float | None,
+    animation: str | None,
     strict: bool,
     fitting: Fitting,
 ) -> int:
@@ -146,7 +147,7 @@ def convert(
         for job in watched:
             with failures.of(str(job.source)):
                 found, warnings = read_noting(
-                    job.source, positions=positions, asf=asf, fps=amc_fps, strict=strict
+                    job.source, positions=positions, asf=asf, fps=amc_fps, animation=animation, strict=strict
                 )
                 for warning in warnings:
                     say(warning)

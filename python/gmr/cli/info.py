@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from gmr.cli.characters import character_json, character_page, described_character, holds_character
 from gmr.cli.common import Failures, files_of, progress, read_noting, reading_options
 from gmr.cli.markers import marker_json, marker_page
 from gmr.cli.pages import overview, page
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from gmr.description import Description
     from gmr.markers.description import MarkerDescription
     from gmr.motion import Motion
+    from gmr.skinning.description import CharacterDescription
 
 __all__ = ["info"]
 
@@ -40,9 +42,10 @@ def info(
     positions: str,
     asf: str | None,
     amc_fps: float | None,
+    animation: str | None,
     strict: bool,
 ) -> int:
-    """Tell what is in motion files, and what is odd about them.
+    """Tell what is in files of motions, markers and characters, and what is odd about them.
 
     FILE is a file, a folder (all motions in it and below) or - for standard input. Units and the axis that
     points up are guessed from the body, and said to be guesses.
@@ -55,6 +58,7 @@ def info(
       gmr info --json takes/ | jq '.[] | select(.oddities != []) | .file'
       cat walk.bvh | gmr info -
       gmr info walk.c3d                     markers, gaps, flickering and exchanged ones
+      gmr info fox.glb                      joints, meshes, materials, animations
     """
     failures = Failures()
     paths: list[Path | str] = []
@@ -63,17 +67,24 @@ def info(
             paths += files_of(file)
     found: dict[str, Description] = {}
     recordings: dict[str, MarkerDescription] = {}
+    characters: dict[str, CharacterDescription] = {}
     with progress(paths, "Reading") as watched:
         for path in watched:
             with failures.of(str(path)):
+                if holds_character(path):
+                    characters[str(path)] = described_character(path, strict=strict)
+                    continue
                 options = {"strict": strict, "positions": positions, "asf": asf, "fps": amc_fps}
-                _describe(path, found, recordings, relation, **options)
+                _describe(path, found, recordings, relation, animation=animation, **options)
     if as_json:
         alone = len(files) == 1 and not Path(files[0]).is_dir()
-        click.echo(_as_json(found, recordings, failures.errors, alone))
+        others = {path: marker_json(of) for path, of in recordings.items()}
+        others |= {path: character_json(of) for path, of in characters.items()}
+        click.echo(_as_json(found, others, failures.errors, alone))
         return failures.exit_code()
     pages = [overview(found)] if len(found) > FEW else [page(path, of) for path, of in found.items()]
     pages += [marker_page(path, of) for path, of in recordings.items()]
+    pages += [character_page(path, of) for path, of in characters.items()]
     if pages:
         click.echo("\n\n".join(pages))
     return failures.exit_code()
@@ -81,13 +92,13 @@ def info(
 
 def _as_json(
     found: dict[str, Description],
-    recordings: dict[str, MarkerDescription],
+    others: dict[str, dict[str, Any]],
     errors: dict[str, str],
     alone: bool,
 ) -> str:
     """All that was found and what failed, as JSON."""
     entries = [{"file": path, **_plain(description)} for path, description in found.items()]
-    entries += [{"file": path, **marker_json(description)} for path, description in recordings.items()]
+    entries += [{"file": path, **plain} for path, plain in others.items()]
     entries += [{"file": path, "error": error} for path, error in errors.items()]
     return json.dumps(entries[0] if alone else entries, indent=2, allow_nan=False)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Literal
 
@@ -15,7 +16,16 @@ if TYPE_CHECKING:
     from gmr.markers.recording import Markers
     from gmr.motion import Motion
 
-__all__ = ["Positions", "Skeletons", "Source", "given_options", "read", "read_markers", "read_with"]
+__all__ = [
+    "Positions",
+    "Skeletons",
+    "Source",
+    "contents",
+    "given_options",
+    "read",
+    "read_markers",
+    "read_with",
+]
 
 Positions = Literal["replace", "add"]
 Source = str | os.PathLike[str] | bytes | bytearray | memoryview | IO[str] | IO[bytes]
@@ -30,19 +40,22 @@ def read(
     positions: Positions = "replace",
     asf: Skeletons | None = None,
     fps: float | None = None,
+    animation: str | int | None = None,
     strict: bool = False,
 ) -> Motion:
     """Read a motion.
 
     Args:
         source: a path; or the contents of a file as bytes; or an open file, text or binary.
-        format: "bvh", "amc", "asf", "gmr", "gmrb" or "c3d"; told by the suffix of a path, and by the first
-            bytes of anything else, where left out. GMR's text and binary files are told apart by their
-            bytes, whatever the suffix.
+        format: "bvh", "amc", "asf", "gmr", "gmrb", "c3d", "glb" or "gltf"; told by the suffix of a path, and
+            by the first bytes of anything else, where left out. GMR's text and binary files are told apart by
+            their bytes, whatever the suffix.
         positions: BVH: whether position channels "replace" a joint's OFFSET (as in Blender) or "add" to it.
         asf: AMC: its skeleton, a path or the bytes of a file; where left out, the one beside (07_01.asf or
             07.asf for 07_01.amc, or the only one in the folder).
-        fps: AMC: frames a second, for most files do not say; 120 where they and you do not.
+        fps: AMC: frames a second, for most files do not say; 120 where they and you do not. glTF: the rate
+            at which the animation is sampled; that of its keys where left out.
+        animation: glTF: which one, by name or index; the first where left out.
         strict: refuse what is read with a warning otherwise, such as fewer rows than the file declares.
 
     Returns:
@@ -56,7 +69,7 @@ def read(
     Warns:
         FormatWarning: something odd was read all the same.
     """
-    options = given_options(positions, asf, fps)
+    options = given_options(positions, asf, fps, animation)
     return read_with(source, options, format=format, strict=strict, all_taken=True)
 
 
@@ -75,7 +88,12 @@ def read_markers(source: Source, format: str | None = None, *, strict: bool = Fa
     return found
 
 
-def given_options(positions: Positions, asf: Skeletons | None, fps: float | None) -> dict[str, Any]:
+def given_options(
+    positions: Positions,
+    asf: Skeletons | None,
+    fps: float | None,
+    animation: str | int | None = None,
+) -> dict[str, Any]:
     """What differs from how each format is read by itself.
 
     Raises:
@@ -83,7 +101,8 @@ def given_options(positions: Positions, asf: Skeletons | None, fps: float | None
     """
     if positions not in ("replace", "add"):
         raise ValueError(f"positions='{positions}' is not known; use 'replace' or 'add'")
-    options = {"positions": None if positions == "replace" else positions, "asf": asf, "fps": fps}
+    chosen = None if positions == "replace" else positions
+    options = {"positions": chosen, "asf": asf, "fps": fps, "animation": animation}
     return {name: value for name, value in options.items() if value is not None}
 
 
@@ -101,7 +120,7 @@ def read_with(
         FormatError: as :func:`read`; or ``all_taken`` is asked for and the format does not know an option.
     """
     chosen = None if format is None else named_format(format)
-    name, data = _contents(source, chosen)
+    name, data = contents(source, lambda path: (chosen or format_of_file(path)).is_mapped)
     if not data:
         raise FormatError("the file is empty, it holds no motion; export it again", file=name)
     if chosen is None:
@@ -119,8 +138,14 @@ def _taken(chosen: Format, options: dict[str, Any], name: str | None, all_taken:
     return {option: value for option, value in options.items() if option in chosen.options}
 
 
-def _contents(source: Source, chosen: Format | None) -> tuple[str | None, bytes | memoryview]:
-    """What the source is called, and all its bytes, or its map in memory where the format takes that."""
+def contents(
+    source: Source, is_mapped: Callable[[str], bool] = lambda path: False
+) -> tuple[str | None, bytes | memoryview]:
+    """What the source is called, and all its bytes, or its map in memory where ``is_mapped`` of its path.
+
+    Raises:
+        FormatError: the file is missing or cannot be read.
+    """
     if isinstance(source, bytes | bytearray | memoryview):
         return None, bytes(source)
     if isinstance(source, str | os.PathLike):
@@ -129,9 +154,7 @@ def _contents(source: Source, chosen: Format | None) -> tuple[str | None, bytes 
         path = Path(source)
         if not str(source):
             raise FormatError("an empty text names no file; give a path", file="''")
-        if chosen is None and path.is_file():
-            chosen = format_of_file(str(path))
-        return str(path), _file_contents(path, chosen is not None and chosen.is_mapped)
+        return str(path), _file_contents(path, path.is_file() and is_mapped(str(path)))
     if not hasattr(source, "read"):
         raise TypeError(f"a motion is read from a path, bytes or an open file, not from {source!r:.60}")
     data = source.read()

@@ -130,6 +130,11 @@ FORMATS: Final = (
         begins_at=8, is_mapped=True,
     ),
     Format("C3D", (".c3d",), (b"\x02P",), "gmr.formats.c3d", "read_c3d", None, begins_at=0, holds="markers"),
+    Format(
+        "GLB", (".glb",), (b"glTF",), "gmr.formats.gltf", "read_gltf", None,
+        options=("animation", "fps"), begins_at=0,
+    ),
+    Format("glTF", (".gltf",), (b"{",), "gmr.formats.gltf", "read_gltf", None, options=("animation", "fps")),
 )  # fmt: skip
 
 

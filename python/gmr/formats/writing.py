@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, cast
 
@@ -15,7 +16,7 @@ from gmr.unbuffered import write_all
 if TYPE_CHECKING:
     from gmr.motion import Motion
 
-__all__ = ["Target", "write"]
+__all__ = ["Target", "write", "write_pieces"]
 
 Target = str | os.PathLike[str] | IO[str] | IO[bytes]
 
@@ -68,6 +69,22 @@ def _write_file(motion: Motion, path: Path, chosen: Format) -> None:
     parts = {path: chosen.write(motion)}
     if beside is not None:
         parts[beside] = chosen.write_beside(motion)
+    _replace(path, parts)
+
+
+def write_pieces(path: Path, pieces: Iterable[bytes | memoryview]) -> None:
+    """Writes a file, whole or not at all.
+
+    Raises:
+        GmrError: it cannot be written; what was there is untouched.
+    """
+    if os.path.isdir(path):  # noqa: PTH112
+        raise GmrError(f"{path}: this is a folder; name a file in it")
+    _replace(path, {path: pieces})
+
+
+def _replace(path: Path, parts: Mapping[Path, Iterable[bytes | memoryview]]) -> None:
+    """Puts files in their places together; ``path`` names them in errors."""
     try:
         with replacing(*parts) as files:
             for file, pieces in zip(files, parts.values(), strict=True):

@@ -1,7 +1,52 @@
-"""Skinning: a mesh follows a skeleton."""
+"""Characters: meshes carried by joints, how they are bound and how they are moved."""
 
 from __future__ import annotations
 
-from gmr.skinning.blending import Hemisphere, Method, Skin
+from typing import TYPE_CHECKING, Any
 
-__all__ = ["Hemisphere", "Method", "Skin"]
+if TYPE_CHECKING:
+    from gmr.skinning.appearance import Material, Texture, TextureUse
+    from gmr.skinning.blending import Hemisphere, Method, Skin
+    from gmr.skinning.character import Character
+    from gmr.skinning.keyframes import Animation, Channel
+    from gmr.skinning.nodes import Nodes
+    from gmr.skinning.part import Part
+
+__all__ = [
+    "Animation",
+    "Channel",
+    "Character",
+    "Hemisphere",
+    "Material",
+    "Method",
+    "Nodes",
+    "Part",
+    "Skin",
+    "Texture",
+    "TextureUse",
+]
+
+# Imported when first used: a reader of files needs no kernels, and a kernel no files.
+_HOMES = {
+    "Animation": "gmr.skinning.keyframes",
+    "Channel": "gmr.skinning.keyframes",
+    "Character": "gmr.skinning.character",
+    "Hemisphere": "gmr.skinning.blending",
+    "Material": "gmr.skinning.appearance",
+    "Method": "gmr.skinning.blending",
+    "Nodes": "gmr.skinning.nodes",
+    "Part": "gmr.skinning.part",
+    "Skin": "gmr.skinning.blending",
+    "Texture": "gmr.skinning.appearance",
+    "TextureUse": "gmr.skinning.appearance",
+}
+
+
+def __getattr__(name: str) -> Any:
+    from importlib import import_module
+
+    if name not in _HOMES:
+        raise AttributeError(f"module 'gmr.skinning' has no attribute '{name}'")
+    found = getattr(import_module(_HOMES[name]), name)
+    globals()[name] = found
+    return found
