@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.evaluation.result import Evaluation, Replay, Summary, Tables, Verdict
-from gmr.evaluation.table import Table
 from gmr.evaluation.transitions import KINDS
+from gmr.table import Table
 
 RATE = 60.0
 SPEEDS = np.arange(1.0, 3.01, 0.25)

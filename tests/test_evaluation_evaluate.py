@@ -286,7 +286,7 @@ def test_tables_are_written_whole_or_not_at_all(
     def full_disk(table: Table, file: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setitem(gmr.evaluation.table.FORMATS, "csv", full_disk)
+    monkeypatch.setitem(gmr.table.FORMATS, "csv", full_disk)
     with pytest.raises(OSError, match="No space left"):
         found.write_tables(tmp_path / "full", ("json", "csv"))
     assert not (tmp_path / "full").exists()

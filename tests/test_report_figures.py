@@ -24,10 +24,10 @@ from gmr.evaluation.figures.coverage_density import coverage_density
 from gmr.evaluation.figures.coverage_scatter import coverage_scatter
 from gmr.evaluation.figures.frame_usage import frame_usage
 from gmr.evaluation.figures.holds_map import holds_map
-from gmr.evaluation.figures.theme import DARK, LIGHT, STEPS
 from gmr.evaluation.figures.transition_matrix import flows
 from gmr.evaluation.figures.wording import base_name, short_names
 from gmr.evaluation.regions import Grid, Limits
+from gmr.pages.theme import DARK, LIGHT, STEPS
 
 
 @pytest.fixture(scope="module")

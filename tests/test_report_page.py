@@ -17,11 +17,11 @@ import pytest
 from fake_evaluation import fake_evaluation, with_names
 from gmr.evaluation import Table
 from gmr.evaluation.report import write_report
-from gmr.evaluation.report.columns import packed, steps
-from gmr.evaluation.report.document import json_text
 from gmr.evaluation.report.page import page
 from gmr.evaluation.report.replay import packed_replay, sides
 from gmr.evaluation.result import Evaluation
+from gmr.pages.columns import packed, steps
+from gmr.pages.document import json_text
 
 NASTY = "a</script><script>document.title='owned'</script><b onclick=\"x\">&amp;'\u2028.bvh"
 

@@ -7,6 +7,6 @@ datasets through motion matching techniques", MIG 2022.
 from __future__ import annotations
 
 from gmr.evaluation.result import Evaluation, Replay, Summary, Tables, Verdict
-from gmr.evaluation.table import Table
+from gmr.table import Table
 
 __all__ = ["Evaluation", "Replay", "Summary", "Table", "Tables", "Verdict"]

@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.table import Table
 from gmr.evaluation.words import count, duration, listing, percent, some_of
+from gmr.table import Table
 
 __all__ = ["MIRRORED", "clip_sentences"]
 

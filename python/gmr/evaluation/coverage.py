@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.evaluation.frames import Frames
-from gmr.evaluation.table import Table
+from gmr.table import Table
 
 __all__ = ["Bins", "Density", "coverage_table", "density", "symmetry"]
 

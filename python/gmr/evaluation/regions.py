@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.table import Table
+from gmr.table import Table
 
 __all__ = [
     *("EITHER", "LEFT", "LEFT_ONLY", "RIGHT", "RIGHT_ONLY", "STRAIGHT"),

@@ -11,9 +11,9 @@ from gmr.evaluation.log import FORCED, JUMPED, Log
 from gmr.evaluation.metrics import offset
 from gmr.evaluation.result import Replay
 from gmr.evaluation.scenario import Trial
-from gmr.evaluation.table import Table
 from gmr.matching.database import Database
 from gmr.matching.trial import TrialLog, trial_positions
+from gmr.table import Table
 
 __all__ = ["replay_of", "worst_trial"]
 

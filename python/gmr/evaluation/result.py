@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.table import FORMATS, Table
 from gmr.replacing import replacing
+from gmr.table import FORMATS, Table
 
 if TYPE_CHECKING:
     import pyarrow

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gmr.evaluation.frames import Frames
 from gmr.evaluation.log import FORCED, Log
-from gmr.evaluation.table import Table
+from gmr.table import Table
 
 __all__ = [
     "FORCED_END",

@@ -12,8 +12,8 @@ from gmr.evaluation.frames import Frames
 from gmr.evaluation.log import Log
 from gmr.evaluation.metrics import mean_where, percentile_where, rms_where
 from gmr.evaluation.scenario import Trial
-from gmr.evaluation.table import Table
 from gmr.evaluation.transitions import FORCED_END, INTER_CLIP, INTRA_CLIP, Transitions
+from gmr.table import Table
 
 __all__ = ["trials_table"]
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gmr.evaluation.frames import Frames
 from gmr.evaluation.log import Log
-from gmr.evaluation.table import Table
+from gmr.table import Table
 
 __all__ = ["clips_table", "play_counts", "usage_table"]
 

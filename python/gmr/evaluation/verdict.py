@@ -16,8 +16,8 @@ from gmr.evaluation.clip_sentences import clip_sentences
 from gmr.evaluation.failure_sentences import capture_sentences, failure_sentences
 from gmr.evaluation.regions import Grid, Limits, failures, held_rectangle
 from gmr.evaluation.result import Verdict
-from gmr.evaluation.table import Table
 from gmr.evaluation.words import count, duration, listing, percent, some_of, span, turning
+from gmr.table import Table
 
 __all__ = ["verdict"]
 

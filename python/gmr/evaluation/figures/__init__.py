@@ -11,7 +11,6 @@ from gmr.evaluation.figures.clip_circles import clip_circles
 from gmr.evaluation.figures.clip_usage import clip_usage
 from gmr.evaluation.figures.coverage_density import coverage_density
 from gmr.evaluation.figures.coverage_scatter import coverage_scatter
-from gmr.evaluation.figures.figure import Figure
 from gmr.evaluation.figures.frame_usage import frame_usage
 from gmr.evaluation.figures.holds_map import holds_map
 from gmr.evaluation.figures.measures import MEASURES
@@ -19,6 +18,7 @@ from gmr.evaluation.figures.transition_kinds import transition_kinds
 from gmr.evaluation.figures.transition_matrix import transition_matrix
 from gmr.evaluation.figures.trial_maps import trial_map, trial_sets
 from gmr.evaluation.result import Evaluation
+from gmr.pages.figure import Figure
 from gmr.replacing import replacing
 
 __all__ = ["Figure", "figures", "svg"]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.figures.theme import STEPS
+from gmr.pages.theme import STEPS
 
 __all__ = ["Classes", "two_sided"]
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.evaluation.figures.clip_usage import recordings
-from gmr.evaluation.figures.figure import Figure
 from gmr.evaluation.figures.wording import base_name
 from gmr.evaluation.result import Evaluation
-from gmr.evaluation.table import Table
 from gmr.evaluation.words import count, percent
+from gmr.pages.figure import Figure
+from gmr.table import Table
 
 __all__ = ["clip_circles"]
 

@@ -7,12 +7,12 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.figures.figure import Figure
-from gmr.evaluation.figures.theme import NAMES_AXIS, NAMES_CONFIG, ROW
 from gmr.evaluation.figures.wording import base_name, short_names
 from gmr.evaluation.result import Evaluation
-from gmr.evaluation.table import Table
 from gmr.evaluation.words import count, percent
+from gmr.pages.figure import Figure
+from gmr.pages.theme import NAMES_AXIS, NAMES_CONFIG, ROW
+from gmr.table import Table
 
 __all__ = ["MOST_BARS", "clip_usage", "never_played", "recordings"]
 

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from gmr.evaluation.coverage import Bins, Density, density
 from gmr.evaluation.figures.classes import Classes
-from gmr.evaluation.figures.figure import Figure
-from gmr.evaluation.figures.theme import turn_ticks
 from gmr.evaluation.figures.wording import asked
 from gmr.evaluation.regions import Grid, Limits
 from gmr.evaluation.result import Evaluation
-from gmr.evaluation.table import Table
 from gmr.evaluation.words import count, duration, listing, percent
+from gmr.pages.figure import Figure
+from gmr.pages.theme import turn_ticks
+from gmr.table import Table
 
 __all__ = ["coverage_density", "seconds_near_pairs"]
 

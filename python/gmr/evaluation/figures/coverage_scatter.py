@@ -7,12 +7,12 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.figures.figure import Figure
-from gmr.evaluation.figures.theme import turn_ticks
 from gmr.evaluation.figures.wording import base_name
 from gmr.evaluation.result import Evaluation
-from gmr.evaluation.table import Table
 from gmr.evaluation.words import count, percent
+from gmr.pages.figure import Figure
+from gmr.pages.theme import turn_ticks
+from gmr.table import Table
 
 __all__ = ["coverage_scatter"]
 

@@ -7,12 +7,12 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.figures.figure import Figure
 from gmr.evaluation.figures.trial_maps import HOVER, cells_of_trials, trials_of
 from gmr.evaluation.regions import Grid, Limits
 from gmr.evaluation.result import Evaluation
-from gmr.evaluation.table import Table
 from gmr.evaluation.words import count, listing, percent
+from gmr.pages.figure import Figure
+from gmr.table import Table
 
 __all__ = ["holds_map"]
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from gmr.evaluation.figures.classes import Classes, two_sided
 from gmr.evaluation.figures.wording import asked, metres
-from gmr.evaluation.table import Table
 from gmr.evaluation.words import percent
+from gmr.table import Table
 
 __all__ = ["MEASURES", "Measure"]
 

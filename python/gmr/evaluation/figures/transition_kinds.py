@@ -6,10 +6,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from gmr.evaluation.figures.figure import Figure
 from gmr.evaluation.result import Evaluation
-from gmr.evaluation.table import Table
 from gmr.evaluation.words import count, percent, turning
+from gmr.pages.figure import Figure
+from gmr.table import Table
 
 __all__ = ["KIND_LABELS", "transition_kinds"]
 

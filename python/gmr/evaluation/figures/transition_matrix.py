@@ -8,12 +8,12 @@ import numpy as np
 
 from gmr.evaluation.figures.classes import Classes
 from gmr.evaluation.figures.clip_usage import recordings
-from gmr.evaluation.figures.figure import Figure
-from gmr.evaluation.figures.theme import NAMES_AXIS, NAMES_CONFIG, ROW
 from gmr.evaluation.figures.wording import base_name, short_names
 from gmr.evaluation.result import Evaluation
-from gmr.evaluation.table import Table
 from gmr.evaluation.words import percent
+from gmr.pages.figure import Figure
+from gmr.pages.theme import NAMES_AXIS, NAMES_CONFIG, ROW
+from gmr.table import Table
 
 __all__ = ["flows", "transition_matrix"]
 

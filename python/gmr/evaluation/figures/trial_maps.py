@@ -6,10 +6,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from gmr.evaluation.figures.figure import Figure
 from gmr.evaluation.figures.measures import Measure
 from gmr.evaluation.result import Evaluation
-from gmr.evaluation.table import Table
+from gmr.pages.figure import Figure
+from gmr.table import Table
 
 __all__ = ["HOVER", "cells_of_trials", "trial_map", "trial_sets", "trials_of"]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from gmr.evaluation.report.document import element, text
 from gmr.evaluation.result import Summary
+from gmr.pages.document import element, text
 
 __all__ = ["SOURCE", "terms"]
 

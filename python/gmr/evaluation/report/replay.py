@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.evaluation.figures.wording import asked, metres, short_names
-from gmr.evaluation.report.columns import packed_array
 from gmr.evaluation.result import Replay
+from gmr.pages.columns import packed_array
 
 __all__ = ["packed_replay", "replay_sentence", "sides"]
 

@@ -11,12 +11,12 @@ from gmr.evaluation.figures import Figure
 from gmr.evaluation.figures.clip_usage import never_played, recordings
 from gmr.evaluation.figures.measures import MEASURES
 from gmr.evaluation.figures.transition_matrix import flows
-from gmr.evaluation.report.document import element, items, own, text
 from gmr.evaluation.report.method import SOURCE, terms
 from gmr.evaluation.report.replay import replay_sentence
 from gmr.evaluation.report.tables import Column, clip_columns, flow_columns, html_table, trial_columns
 from gmr.evaluation.result import Evaluation, Summary
 from gmr.evaluation.words import count, duration
+from gmr.pages.document import element, items, own, text
 
 __all__ = ["clip_groups", "facts", "sections"]
 
@@ -228,7 +228,7 @@ def _folded(title: str, content: str, name: str) -> str:
 
 def _replay(evaluation: Evaluation) -> str:
     sentence = replay_sentence(evaluation.replay)
-    return _section("replay", "The worst trial, replayed", sentence, own("player.html"))
+    return _section("replay", "The worst trial, replayed", sentence, own(__package__, "player.html"))
 
 
 def _tables(evaluation: Evaluation) -> str:

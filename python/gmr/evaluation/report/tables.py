@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from gmr.evaluation.report.document import element, text
-from gmr.evaluation.table import Table
+from gmr.pages.document import element, text
+from gmr.table import Table
 
 __all__ = ["MOST_ROWS", "Column", "clip_columns", "flow_columns", "html_table", "trial_columns"]
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from gmr.evaluation.figures.theme import LOOK, in_light_colours
-from gmr.evaluation.table import Table
+from gmr.pages.theme import LOOK, in_light_colours
+from gmr.table import Table
 
 __all__ = ["SCHEMA", "Figure"]
 

@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.table import Table
+from gmr.table import Table
 
 __all__ = ["packed", "packed_array", "steps"]
 

@@ -13,9 +13,9 @@ from typing import Any
 __all__ = ["attributes", "element", "items", "json_text", "own", "script_hash", "text"]
 
 
-def own(name: str) -> str:
-    """A file that ships beside this module."""
-    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
+def own(package: str, name: str) -> str:
+    """A file that ships in a package, beside its modules."""
+    return resources.files(package).joinpath(name).read_text(encoding="utf-8")
 
 
 def text(value: object) -> str:
