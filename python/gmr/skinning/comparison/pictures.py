@@ -9,6 +9,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.pages.theme import LIGHT, STEPS
 from gmr.skinning.capsule import Movement, capsule, transforms
 from gmr.skinning.comparison.measured import METHODS, Comparison
 from gmr.skinning.comparison.rendering import Look, View, look_of, still
@@ -68,8 +69,11 @@ def _capsule(movement: Movement, degrees: float) -> Picture:
     of = capsule()
     matrices = transforms(movement, np.array([degrees]))
     assert of.skin.faces is not None
-    look = Look(of.skin.faces, ((0, of.skin.vertex_count, None, None, "#5b9dd6"),))
-    views = [View(name, of.skin.blend(matrices, method)[0], look) for method, name in METHODS.items()]
+    look = Look(of.skin.faces, ((0, of.skin.vertex_count, None, None, ""),))
+    views = [
+        View(name, of.skin.blend(matrices, method)[0], look, _stripes(of.skin.vertices))
+        for method, name in METHODS.items()
+    ]
     words = {"bend": "bent", "twist": "twisted"}[movement]
     return Picture(
         f"capsule_{movement}",
@@ -85,11 +89,7 @@ def _frame(of: Comparison, look: Look, frame: int) -> Picture:
     linear, dual, _ = METHODS.values()
     apart = 1000 * np.linalg.norm(skinned[dual] - skinned[linear], axis=-1).astype(float)
     views = [View(name, vertices, look) for name, vertices in skinned.items()]
-    views.append(
-        View(
-            "linear to dual quaternion", skinned[dual], look, apart, "mm apart", max(float(apart.max()), 1.0)
-        )
-    )
+    views.append(View(f"apart: dark is {apart.max():.0f} mm", skinned[dual], look, _heat(apart)))
     seconds = of.apart["seconds"][frame]
     return Picture(
         f"frame_{frame:05}",
@@ -99,3 +99,23 @@ def _frame(of: Comparison, look: Look, frame: int) -> Picture:
         f"does: at most {apart.max():.0f} mm, round {of.apart['joint'][frame]}.",
         still(views, direction(of).tolist(), size=_SIZE),
     )
+
+
+def _heat(values: NDArray[np.float64]) -> NDArray[np.uint8]:
+    """Colours of the page's scale of errors: pale at 0, dark at the greatest."""
+    scale = np.array([_rgb(LIGHT[f"error-{step}"]) for step in range(STEPS)])
+    place = np.linspace(0, max(float(values.max()), 1e-9), STEPS)
+    channels = [np.interp(values, place, scale[:, channel]) for channel in range(3)]
+    return np.stack(channels, axis=1).astype(np.uint8)
+
+
+def _stripes(vertices: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Eight stripes along the capsule, so that a twist is seen."""
+    around = np.arctan2(vertices[:, 2], vertices[:, 0]) / (2 * np.pi) + 0.5
+    dark = (np.floor(16 * around + 0.01) % 2).astype(bool)
+    found: NDArray[np.uint8] = np.where(dark[:, None], _rgb(LIGHT["kind-0"]), _rgb(LIGHT["bar-second"]))
+    return found.astype(np.uint8)
+
+
+def _rgb(colour: str) -> list[int]:
+    return [int(colour[at : at + 2], 16) for at in (1, 3, 5)]

@@ -22,7 +22,6 @@ __all__ = ["Look", "View", "film", "film_frames", "look_of", "still"]
 
 _SKIN: Final = "#c9b49c"
 _GROUND: Final = "#e9ecef"
-_HEAT: Final = "inferno_r"
 _FILM_RATE: Final = 30
 
 Progress = Callable[[int], None]
@@ -45,9 +44,8 @@ class View:
     vertices: NDArray[np.float32]
     """(V, 3), or (F, V, 3) for a film; metres, Y up."""
     look: Look
-    heat: NDArray[np.float64] | None = None
-    """(V,) numbers to colour vertices by instead, from pale at 0 to dark."""
-    heat_limit: float = 1.0
+    colours: NDArray[np.uint8] | None = None
+    """(V, 3) red, green and blue of the vertices, instead of their look."""
 
 
 def look_of(character: Character) -> Look:
@@ -108,7 +106,7 @@ def film_frames(frame_count: int, frame_time: float) -> list[int]:
 
 
 def _at(view: View, frame: int) -> View:
-    return View(view.title, view.vertices[frame], view.look, view.heat, view.heat_limit)
+    return View(view.title, view.vertices[frame], view.look, view.colours)
 
 
 @contextmanager
@@ -139,16 +137,9 @@ def _draw(plotter: pyvista.Plotter, view: View) -> list[pyvista.PolyData]:
         mesh = _mesh(view, start, end)
         meshes.append(mesh)
         options: dict[str, Any] = {"color": colour, "smooth_shading": True, "specular": 0.15}
-        if view.heat is not None:
-            mesh["heat"] = view.heat[start:end]
-            options = {
-                "scalars": "heat",
-                "cmap": _HEAT,
-                "clim": (0.0, view.heat_limit),
-                "smooth_shading": True,
-                "show_scalar_bar": False,
-                "ambient": 0.3,
-            }
+        if view.colours is not None:
+            mesh["colours"] = view.colours[start:end]
+            options = {"scalars": "colours", "rgb": True, "smooth_shading": True, "ambient": 0.2}
         elif picture is not None and coordinates is not None:
             # VTK counts pictures from below, glTF from above.
             mesh.active_texture_coordinates = coordinates * [1, -1] + [0, 1]
