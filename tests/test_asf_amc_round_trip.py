@@ -152,6 +152,25 @@ def test_operations_on_frames_and_units_keep_what_the_asf_says(data: Path) -> No
     assert dofs(read_back(posed)).acclaim.limits == metres.acclaim.limits
 
 
+@given(dof_motions(), st.floats(0.001, 10), st.sampled_from(["m", "cm", "in"]))
+def test_a_centre_of_mass_keeps_its_place_along_the_bone_in_every_unit(
+    motion: Motion, place: float, unit: str
+) -> None:
+    acclaim = dofs(motion).acclaim
+    notes = (f"cofmass {place!r}", "bodymass 3", "cofmass unknown")
+    noted = replace(
+        acclaim, bones=tuple(replace(bone, length=2 * place, notes=notes) for bone in acclaim.bones)
+    )
+    for source in (replace(dofs(motion), acclaim=noted), replace(motion.pose, acclaim=noted)):
+        found = replace(motion, skeleton=noted.skeleton, source=source, unit=0.3).to_unit(unit).acclaim
+        assert found is not None
+        for bone in found.bones:
+            word, told = bone.notes[0].split()
+            assert word == "cofmass"
+            assert float(told) == pytest.approx(bone.length / 2, rel=1e-15)
+            assert bone.notes[1:] == notes[1:]
+
+
 FRAME_TIMES = st.sampled_from([0.0, 1 / 120, 0.0083333, 0.04, 1 / 29.97])
 
 

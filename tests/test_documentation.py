@@ -9,9 +9,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from c3d_files import recorded
+import gmr
+from c3d_files import as_written_by, recorded
 from gmr.demo import demo_folder
 from marker_scene import noisy, worn
 
@@ -30,7 +32,8 @@ def pages_with(language: str) -> list[Path]:
 
 @pytest.fixture
 def reader_folder(tmp_path: Path) -> Path:
-    """What the documentation assumes: walk.bvh, walk.c3d, figure.gltf, 07_01.amc, 07.asf, clips in takes/."""
+    """What the documentation assumes: two walks as walk.bvh and walk.c3d, the latter as mips.c3d too,
+    figure.gltf, 07_01.amc, 07.asf, clips in takes/."""
     takes = tmp_path / "takes"
     takes.mkdir()
     for clip in ("02_01", "07_01", "07_12", "08_01", "09_01", "09_02"):
@@ -39,7 +42,8 @@ def reader_folder(tmp_path: Path) -> Path:
     for file in ("07.asf", "07_01.amc"):
         shutil.copy(ROOT / "tests" / "data" / "amc" / file, tmp_path)
     shutil.copy(ROOT / "tests" / "data" / "rigged_simple.gltf", tmp_path / "figure.gltf")
-    recorded(tmp_path / "walk.c3d", noisy(worn(), 0.5))
+    walk = recorded(tmp_path / "walk.c3d", noisy(worn(), 0.5)).read_bytes()
+    (tmp_path / "mips.c3d").write_bytes(as_written_by(walk, "MIPS"))
     return tmp_path
 
 
@@ -50,6 +54,14 @@ def test_python_examples_run(page: Path, reader_folder: Path) -> None:
         [sys.executable, "-c", program], cwd=reader_folder, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_the_recipe_for_files_of_mips_computers_keeps_every_place(reader_folder: Path) -> None:
+    (recipe,) = (block for block in blocks(ROOT / "docs" / "markers.md", "python") if "mips.c3d" in block)
+    subprocess.run([sys.executable, "-c", f"import gmr\n{recipe}"], cwd=reader_folder, check=True)
+    walk, found = (gmr.read_markers(reader_folder / name) for name in ("walk.c3d", "intel.c3d"))
+    assert (found.labels, found.fps, found.unit) == (walk.labels, walk.fps, walk.unit)
+    np.testing.assert_allclose(found.positions, walk.positions, rtol=0, atol=0.001)
 
 
 @pytest.mark.parametrize("page", pages_with("console"), ids=lambda page: page.name)

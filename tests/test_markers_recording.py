@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import gmr
 from gmr.demo import demo_folder
-from gmr.markers import Markers, Up
+from gmr.markers import Event, Markers, Up
 from gmr.markers.axes import AXES, axis_vector
 from marker_scene import worn
 
@@ -74,6 +74,27 @@ def test_slices_are_frames_and_crops_are_seconds() -> None:
         markers[3]  # type: ignore[index]
     with pytest.raises(gmr.GmrError, match="backwards"):
         markers[::-1]
+
+
+@given(st.data())
+def test_events_stay_at_their_frames_however_a_recording_is_cut(data: st.DataObject) -> None:
+    frames = data.draw(st.lists(st.integers(-5, 25), max_size=6))
+    events = tuple(Event(str(frame), "", 0.1 * frame) for frame in frames)
+    markers = Markers(("A",), np.zeros((20, 1, 3)), 0.1, events=events)
+    start, stop, step = data.draw(st.tuples(st.integers(0, 20), st.integers(0, 20), st.integers(1, 3)))
+    whole = (start, stop, step) == (0, 20, 1)
+    found = {(event.label, round(event.seconds, 9)) for event in markers[start:stop:step].events}
+    kept = [frame for frame in frames if whole or start <= frame < stop]
+    assert found == {(str(frame), round(0.1 * (frame - start), 9)) for frame in kept}
+
+
+def test_events_of_a_crop_are_told_from_its_first_frame() -> None:
+    events = (Event("strike", "Left", 0.25), Event("off", "Left", 1.5))
+    markers = Markers(("A",), np.zeros((200, 1, 3)), 0.01, events=events)
+    (event,) = markers.crop(1.0, 2.0).events
+    assert (event.label, event.context) == ("off", "Left")
+    assert event.seconds == pytest.approx(0.5)
+    assert Markers(("A",), np.zeros((9, 1, 3)), 0.0, events=events)[3:].events == events
 
 
 def test_markers_are_chosen_by_label_or_place() -> None:

@@ -15,6 +15,7 @@ mkdir -p fuzz/corpus/{bvh_reader,amc_reader,gltf,gmr_text,gmr_binary,parse_rows,
 for form in text binary; do
     .venv/bin/python "fuzz/gmr_${form}_reader.py" -dict=fuzz/gmr.dict "${limits[@]}" -max_len=4096 "fuzz/corpus/gmr_$form" tests/data/gmr/valid tests/data/gmr/invalid
 done
+.venv/bin/python fuzz/c3d_parameters.py --count 3000
 cargo +nightly fuzz run parse_rows fuzz/corpus/parse_rows -- -dict=fuzz/bvh.dict "${limits[@]}" -max_len=4096
 cargo +nightly fuzz run format_rows fuzz/corpus/format_rows -- "${limits[@]}"
 cargo +nightly fuzz run bvh_bytes fuzz/corpus/bvh_bytes fuzz/seeds/bvh -- -dict=fuzz/bvh.dict "${limits[@]}" -max_len=4096

@@ -12,6 +12,7 @@ same takes as BVH.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -35,6 +36,7 @@ INCH: Final = 0.0254
 UNLIMITED: Final[Limits] = (-math.inf, math.inf)
 """What a degree of freedom may do of which nobody said more."""
 
+_NUMBER: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _MIRRORED_LENGTHS = (-1.0, 1.0, 1.0)
 _MIRRORED_ANGLES = {"x": 1.0, "y": -1.0, "z": -1.0}
 
@@ -69,7 +71,8 @@ class Bone:
         dofs: "rx", "ry", "rz" or some of them, in the order in which frames list and apply them.
         limits: least and greatest value of each of ``dofs`` in the file's angles.
         number: its ``id``, as the file has it.
-        notes: lines that gmr makes no use of (``bodymass``, ``cofmass``), kept for writing.
+        notes: lines that gmr makes no use of, kept for writing: ``bodymass``, and ``cofmass``, the place of
+            the centre of mass along the bone in file units.
     """
 
     name: str
@@ -208,12 +211,20 @@ class Acclaim:
         return read_only(found[0])
 
     def scaled(self, factor: float) -> Acclaim:
-        """The same skeleton in a unit in which every length is ``factor`` times the number that it was."""
+        """The same skeleton in a unit in which every length, ``cofmass`` too, is ``factor`` times the number
+        that it was."""
         x, y, z = (factor * value for value in self.root.position)
         return replace(
             self,
             root=replace(self.root, position=(x, y, z)),
-            bones=tuple(replace(bone, length=bone.length * factor) for bone in self.bones),
+            bones=tuple(
+                replace(
+                    bone,
+                    length=bone.length * factor,
+                    notes=tuple(_scaled_note(note, factor) for note in bone.notes),
+                )
+                for bone in self.bones
+            ),
             length=self.length if self.length == 1 else self.length * factor,
         )
 
@@ -245,6 +256,14 @@ class Acclaim:
             orientation=_mirrored_angles(self.root.orientation, self.root.axis_order),
         )
         return replace(self, root=root, bones=tuple(bones))
+
+
+def _scaled_note(note: str, factor: float) -> str:
+    """The line in the new unit: ``cofmass`` is a distance along the bone; what is no number stays."""
+    word, _, told = note.partition(" ")
+    if word.lower() != "cofmass" or not _NUMBER.fullmatch(told):
+        return note
+    return f"{word} {_core.format_rows(np.array([[float(told) * factor]])).decode().strip()}"
 
 
 def _mirrored_angles(angles: Vector, order: str) -> Vector:

@@ -17,7 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.errors import FormatError, FormatWarning
-from gmr.formats.c3d_bytes import BLOCK, Header, by_ezc3d, read_header
+from gmr.formats.c3d_bytes import by_ezc3d, read_header
+from gmr.formats.c3d_layout import BLOCK, Header
+from gmr.formats.c3d_values import Parameters, number, numbers, parameters_of, texts
 from gmr.listing import quoted
 from gmr.markers.axes import AXES, floor_axis
 from gmr.markers.recording import Event, Markers, Up
@@ -32,9 +34,6 @@ _SATURATED: Final = 65535
 """The greatest count of 16 bits, where longer recordings stop counting and ezc3d stops reading."""
 _SHOWN: Final = 6
 
-Parameters = Mapping[str, Mapping[str, Any]]
-"""Group -> name -> value, all in upper case; values are arrays of numbers or lists of strings."""
-
 
 def read_c3d(data: bytes, *, name: str | None = None, strict: bool = False) -> Markers:
     """The markers of a C3D file.
@@ -42,8 +41,11 @@ def read_c3d(data: bytes, *, name: str | None = None, strict: bool = False) -> M
     A point is not seen, and NaN, where its residual is negative, where a coordinate is not finite, and where
     all three are exactly 0, which some programs write instead.
 
-    Lengths are checked before ezc3d, which is C++, sees the file; the rest it believes. Bytes made to do harm
-    may still make it ask for gigabytes, work without end or crash: read such in a process of its own.
+    Every length and count that ezc3d, which is C++, would follow is held against the file's size and against
+    the others before it sees the file, so that time and memory are in proportion to that size.
+
+    Times of events are those of the file, which run from its frame 1, less the time from there to the first
+    frame that the file holds.
 
     Args:
         data: the file's bytes.
@@ -52,20 +54,23 @@ def read_c3d(data: bytes, *, name: str | None = None, strict: bool = False) -> M
 
     Raises:
         MissingExtraError: ezc3d is not installed (the extra ``markers``).
-        FormatError: this is no C3D file, it is damaged or cut off before its first frame ends, a MIPS
-            computer wrote it, or ezc3d refuses it; says where and how to mend it.
+        FormatError: this is no C3D file, it is damaged, contradicts itself or is cut off before its first
+            frame ends, a MIPS computer wrote it, or ezc3d refuses it; says where and how to mend it.
 
     Warns:
         FormatWarning: frames that are cut off, points without a label or with the label of another, frame
-            counts that contradict each other, no points, no unit, an up axis that the markers contradict.
+            counts or places of the frames that contradict each other, no points, no unit, an up axis that the
+            markers contradict.
     """
     odd = _Oddities(name, strict)
     header = read_header(data, name)
     first = by_ezc3d(data, name)
-    parameters = _parameters(first)
-    if header.points and _number(parameters, "SCALE", 0) == 0:
-        raise FormatError("the scale of the points is 0; it must not be. Export it again.", file=name)
-    rate = _number(parameters, "RATE", 0)
+    parameters = parameters_of(first)
+    stated = int(number(parameters, "DATA_START", 0)) % (_SATURATED + 1)
+    if header.row and stated and (stated - 1) * BLOCK != header.start:
+        where = f"block {header.start // BLOCK + 1:,} by the header, block {stated:,} by POINT:DATA_START"
+        odd.say(f"frames begin in {where}; the header's is taken")
+    rate = number(parameters, "RATE", 0)
     if not rate > 0:
         odd.say(f"the rate is {rate} frames a second, so that the frames have no duration")
         rate = math.inf
@@ -84,7 +89,7 @@ def read_c3d(data: bytes, *, name: str | None = None, strict: bool = False) -> M
         residuals=residuals[:, kept],
         up=_up(parameters, positions, odd),
         name=name,
-        events=_events(parameters),
+        events=_events(parameters, max(0, header.first - 1) / rate),
         ignored=ignored,
     )
 
@@ -108,15 +113,13 @@ def _points(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(F, P, 3) places and (F, P) residuals of all points, NaN where not seen."""
     places, residuals = _of_ezc3d(first)
-    if places.shape[1] != header.points:
-        what = f"the header counts {header.points:,} points, the parameters {places.shape[1]:,}"
-        raise FormatError(f"{what}. The file is damaged; export it again.", file=odd.file)
     pieces = [(places, residuals)]
     got = len(places)
     count = _frame_count(data, header, parameters, got, odd)
     while got < count:
         # ezc3d counts in 16 bits: the same file again, without the frames that are already there.
         rest = data[: header.start] + data[header.start + got * header.row :]
+        read_header(rest, odd.file)
         places, residuals = _of_ezc3d(by_ezc3d(rest, odd.file))
         pieces.append((places[: count - got], residuals[: count - got]))
         got += len(pieces[-1][0])
@@ -140,14 +143,15 @@ def _frame_count(data: bytes, header: Header, parameters: Parameters, read: int,
     The header counts in 16 bits, so that long recordings have parameters for it, each in its own way.
     """
     whole = (len(data) - header.start) // header.row if header.row else read
-    start, end = (_long(_numbers(parameters, "TRIAL", f"ACTUAL_{which}_FIELD")) for which in ("START", "END"))
+    start, end = (_long(numbers(parameters, "TRIAL", f"ACTUAL_{which}_FIELD")) for which in ("START", "END"))
     claims = {
-        "POINT:LONG_FRAMES": int(_number(parameters, "LONG_FRAMES", 0)),
+        "POINT:LONG_FRAMES": int(number(parameters, "LONG_FRAMES", 0)),
         "TRIAL:ACTUAL_END_FIELD": end - start + 1 if end else 0,
         "the header": header.frames,
     }
     claims = {where: count for where, count in claims.items() if count > 0}
-    if read == _SATURATED and header.row:
+    turned = any(numbers(parameters, "ROTATION", "USED"))  # then what follows the frames are no frames
+    if read == _SATURATED and header.row and not turned:
         fitting = (claims[key] for key in list(claims)[:-1] if read <= claims[key] <= whole)
         return next(fitting, None) or _uncounted(data, header, odd)
     if 0 < header.frames < read == whole:
@@ -186,7 +190,7 @@ def _labels(
 ) -> tuple[list[int], tuple[str, ...], tuple[str, ...]]:
     """Which points are markers, their labels, and the other points in words."""
     point = parameters.get("POINT", {})
-    labels = list(_listed(parameters, "POINT", "LABELS"))[:count]
+    labels = list(texts(parameters, "POINT", "LABELS"))[:count]
     labels += [""] * (count - len(labels))
     if blank := sum(not label for label in labels):
         odd.say(
@@ -197,7 +201,7 @@ def _labels(
         label: key
         for key in _NO_MARKERS
         if key in point
-        for label in _listed(parameters, "POINT", key)
+        for label in texts(parameters, "POINT", key)
         if label
     }
     kept = [place for place, label in enumerate(labels) if label not in computed]
@@ -206,34 +210,38 @@ def _labels(
         odd.say(f"several markers share a label: {quoted(twice, _SHOWN)}")
     kinds = Counter(computed[label].lower() for label in labels if label in computed)
     ignored = [f"{times} {kind} of a model" for kind, times in kinds.items()]
-    if rotations := int(next(iter(_numbers(parameters, "ROTATION", "USED")), 0)):
+    if rotations := int(next(iter(numbers(parameters, "ROTATION", "USED")), 0)):
         ignored.append(f"rotations of {rotations} segments")
     return kept, chosen, tuple(ignored)
 
 
 def _analog(parameters: Parameters) -> str:
     """The analog channels in words."""
-    names = [label for label in _listed(parameters, "ANALOG", "LABELS") if label]
-    count = int(next(iter(_numbers(parameters, "ANALOG", "USED")), len(names)))
+    names = [label for label in texts(parameters, "ANALOG", "LABELS") if label]
+    count = int(next(iter(numbers(parameters, "ANALOG", "USED")), len(names)))
     said = f" ({', '.join(names[:3])}{', ...' if len(names) > 3 else ''})" if names else ""
     return f"{count} analog channels{said}"
 
 
-def _events(parameters: Parameters) -> tuple[Event, ...]:
-    """The events; times are pairs of minutes and seconds."""
-    labels = _listed(parameters, "EVENT", "LABELS")
-    contexts = _listed(parameters, "EVENT", "CONTEXTS")
-    times = _numbers(parameters, "EVENT", "TIMES")
+def _events(parameters: Parameters, start: float) -> tuple[Event, ...]:
+    """The events; times are pairs of minutes and seconds since frame 1, ``start`` seconds before ours."""
+    labels = texts(parameters, "EVENT", "LABELS")
+    contexts = texts(parameters, "EVENT", "CONTEXTS")
+    times = numbers(parameters, "EVENT", "TIMES")
     count = min(len(labels), len(times) // 2)
     return tuple(
-        Event(labels[k], contexts[k] if k < len(contexts) else "", 60 * times[2 * k] + times[2 * k + 1])
+        Event(
+            label=labels[k],
+            context=contexts[k] if k < len(contexts) else "",
+            seconds=60 * times[2 * k] + times[2 * k + 1] - start,
+        )
         for k in range(count)
     )
 
 
 def _unit(parameters: Parameters, odd: _Oddities) -> float | None:
     """Metres per file unit."""
-    stated = next(iter(_listed(parameters, "POINT", "UNITS")), "")
+    stated = next(iter(texts(parameters, "POINT", "UNITS")), "")
     known = UNITS.get(stated.lower().rstrip("s") if stated.lower() != "cms" else "cm")
     if known is None:
         told = f"in '{stated}', which is no unit that gmr knows" if stated else "in no stated unit"
@@ -243,7 +251,7 @@ def _unit(parameters: Parameters, odd: _Oddities) -> float | None:
 
 def _up(parameters: Parameters, positions: NDArray[np.float64], odd: _Oddities) -> Up | None:
     """The axis that points up: as the file says, unless all markers lie on the other side of the floor."""
-    stated = next(iter(_listed(parameters, "POINT", "Y_SCREEN")), "").upper()
+    stated = next(iter(texts(parameters, "POINT", "Y_SCREEN")), "").upper()
     stated = f"+{stated}" if len(stated) == 1 else stated
     told = floor_axis(positions)
     if stated in AXES:
@@ -257,47 +265,3 @@ def _up(parameters: Parameters, positions: NDArray[np.float64], odd: _Oddities) 
             return Up(told, "all markers are above 0 along it")
         return Up(stated, "the file says so (POINT:Y_SCREEN)")
     return None if told is None else Up(told, "all markers are above 0 along it alone")
-
-
-def _parameters(found: Mapping[str, Any]) -> Parameters:
-    """The parameters as ezc3d has them, without what it says of groups."""
-    return {
-        group.upper(): {key.upper(): held["value"] for key, held in keys.items() if "value" in held}
-        for group, keys in found["parameters"].items()
-    }
-
-
-def _listed(parameters: Parameters, group: str, key: str) -> list[str]:
-    """The strings of a parameter and of those that continue it: LABELS, LABELS2, LABELS3, ..."""
-    held = parameters.get(group, {})
-    found, number = _texts(held.get(key)), 2
-    while f"{key}{number}" in held:
-        found += _texts(held[f"{key}{number}"])
-        number += 1
-    return found
-
-
-def _texts(value: object) -> list[str]:
-    """The strings of a value; none where it holds numbers. Bytes that are no UTF-8 are Latin-1."""
-    return [_text(text) for text in value] if isinstance(value, list) else []
-
-
-def _text(text: str) -> str:
-    raw = text.encode("utf-8", "surrogateescape").split(b"\0")[0]
-    try:
-        return raw.decode().strip()
-    except UnicodeDecodeError:
-        return raw.decode("latin-1").strip()
-
-
-def _numbers(parameters: Parameters, group: str, key: str) -> list[float]:
-    """The finite numbers of a value, the first dimension fastest; none where it holds text or one is not."""
-    value = parameters.get(group, {}).get(key)
-    if not isinstance(value, np.ndarray) or not np.isfinite(value).all():
-        return []
-    return [float(number) for number in value.ravel(order="F")]
-
-
-def _number(parameters: Parameters, key: str, default: float) -> float:
-    """The first number of a parameter of the group POINT; the default where there is none."""
-    return next(iter(_numbers(parameters, "POINT", key)), default)

@@ -41,7 +41,7 @@ class Event:
     Args:
         label: what it is, as the file has it.
         context: of which side or kind, "" where the file does not say.
-        seconds: when, on the clock of the recording.
+        seconds: when, since the first frame of the recording.
     """
 
     label: str
@@ -156,7 +156,11 @@ class Markers(Clip):
         )
 
     def __getitem__(self, part: slice) -> Markers:
-        """Frames ``markers[10:50]``; ``markers[::2]`` has every second one, each twice as long."""
+        """Frames ``markers[10:50]``; ``markers[::2]`` has every second one, each twice as long.
+
+        Events stay at their frames: those nearest to a frame before ``stop`` and not before ``start``, their
+        times counted from the new first frame. Where the frame time is unknown they stay as they are.
+        """
         if not isinstance(part, slice):
             raise TypeError(
                 f"a recording is cut by a slice: markers[{part}:{part} + 1] is the frame {part!r}"
@@ -171,7 +175,18 @@ class Markers(Clip):
             positions=self.positions[part],
             residuals=None if self.residuals is None else self.residuals[part],
             frame_time=self.frame_time * step,
+            events=self.events if whole else self._events_within(start, stop),
             history=self.history if whole else (*self.history, note),
+        )
+
+    def _events_within(self, start: int, stop: int) -> tuple[Event, ...]:
+        if not self.frame_time:
+            return self.events
+        frames = [round(event.seconds / self.frame_time) for event in self.events]
+        return tuple(
+            replace(event, seconds=event.seconds - start * self.frame_time)
+            for event, frame in zip(self.events, frames, strict=True)
+            if start <= frame < stop
         )
 
     def crop(self, start: float, stop: float) -> Markers:
