@@ -90,13 +90,16 @@ def chart(points: Sequence[Point]) -> dict[str, Any]:
         "field": "k", "type": "quantitative", "title": f"roots, of {last} joints",
         "scale": {"domain": [0, last], "nice": False},
     }  # fmt: skip
-    cost = {"type": "quantitative", "title": "nanoseconds a frame", "scale": {"domainMin": 0}}
+    highest = max(point["high"] for point in [*levels(points), *points])
+    scale = {"domain": [0, 1.06 * highest], "nice": False}
+    cost = {"type": "quantitative", "title": "nanoseconds a frame", "scale": scale}
     return {
         "$schema": "https://vega.github.io/schema/vega-lite/v5.json",
         "width": 560,
         "height": 300,
         "background": "white",
         "padding": 14,
+        "title": {"text": "Positions of every joint: what a frame costs", "anchor": "start", "fontSize": 15},
         "config": {"font": "sans-serif", "axis": {"labelFontSize": 12, "titleFontSize": 13}},
         "data": {"values": [point for point in points if point["what"] == GMR] + levels(points)},
         "encoding": {"x": axis, "color": colour},
