@@ -537,12 +537,13 @@ def bind_skin(
     open: NDArray[np.bool_],
     threads: int = 1,
 ) -> tuple[NDArray[np.int32], NDArray[np.float32], NDArray[np.uint32], int, int]:
-    """Joints and weights (V, 4), strongest first, of (V, 3) vertices with 3 T faces that follow the bones from
-    heads to tails (B, 3), each turned by its joint (B,) and open at head, tail (B, 2) where no other meets it; the
-    vertices in no box; the edges that were torn, and those that still are.
+    """Joints and weights (V, 4), strongest first, of (V, 3) vertices with 3 T faces that follow the bones
+    from heads to tails (B, 3), each turned by its joint (B,) and open at head, tail (B, 2) where no other
+    meets it; the vertices in no box; the edges that were torn, and those that still are.
 
     Raises:
-        ValueError: when lengths do not fit, a place is not finite, or a face names a vertex that is not there.
+        ValueError: when lengths do not fit, a place is not finite, or a face names a vertex that is not
+            there.
     """
 
 class Skin:

@@ -57,12 +57,13 @@ class BindingReport:
 
     def __str__(self) -> str:
         idle = [name for name, count in zip(self.names, self.followers, strict=True) if not count]
-        lines = [
-            f"{self.strongest.sum():,} vertices follow {len(self.names) - len(idle)} of {len(self.names)} joints"
-            f" (none follows {listed(idle, _SHOWN)})" * bool(idle),
-            f"{len(self.outside):,} in no bone's box; {self.torn:,} edges torn, {self.still_torn:,} after smoothing",
-        ]
-        return "\n".join(lines)
+        joints = f"{len(self.names) - len(idle)} of {len(self.names)} joints"
+        without = f" (none follows {listed(idle, _SHOWN)})" if idle else ""
+        return (
+            f"{self.strongest.sum():,} vertices follow {joints}{without}\n"
+            f"{len(self.outside):,} in no bone's box; {self.torn:,} edges torn, "
+            f"{self.still_torn:,} after smoothing"
+        )
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -90,16 +91,17 @@ def bind(
 ) -> Binding:
     """Weights for a mesh that a skeleton is to carry; ``weights, joints = bind(vertices, faces, skeleton)``.
 
-    Both stand at rest in one place and one unit. The bone from joint j to its child turns with j, so what lies
-    beside it follows j: the joint that turns a bone, as glTF and BVH have it, not the one in which it ends. End
-    Sites turn nothing and carry nothing. Where roots were moved, the joints are meant as they hang at home.
+    Both stand at rest in one place and one unit. The bone from joint j to its child turns with j, so what
+    lies beside it follows j: the joint that turns a bone, as glTF and BVH have it, not the one in which it
+    ends. End Sites turn nothing and carry nothing. Where roots were moved, the joints are meant as they hang
+    at home.
 
     - ``"gradient"``: each bone has an oriented box that fits the vertices beside it; in it the weight is 1
       along the bone and falls linearly through each of its joints. The largest of a joint's bones counts.
       A vertex in no box follows the nearest bone, and is then smoothed over the edges of the mesh.
-    - ``"heat"``: bone heat: ``(C + M H) w = M H p``, C the cotangent Laplacian of the mesh, M the areas of its
-      vertices, ``H = 1/d^2`` with d the distance to the nearest bone, p 1 for its joint; bones are not tested
-      for being hidden. Needs SciPy.
+    - ``"heat"``: bone heat: ``(C + M H) w = M H p``, C the cotangent Laplacian of the mesh, M the areas of
+      its vertices, ``H = 1/d^2`` with d the distance to the nearest bone, p 1 for its joint; bones are not
+      tested for being hidden. Needs SciPy.
 
     Both give the same for mesh and skeleton moved, turned or scaled together, but for rounding.
 
@@ -189,17 +191,15 @@ def _warn_of_units(vertices: NDArray[np.float64], bones: BoneSegments) -> None:
     """Warns where mesh and bones cannot be in one place and one unit."""
     ends = np.concatenate([bones.heads, bones.tails])
     of_mesh, of_bones = (np.ptp(places, axis=0) for places in (vertices, ends))
-    sizes = (
-        f"the mesh's box is {_by(of_mesh)}, that of the skeleton's bones {_by(of_bones)}"
-    )
+    sizes = f"the mesh's box is {_by(of_mesh)}, that of the skeleton's bones {_by(of_bones)}"
     large, small = float(np.linalg.norm(of_mesh)), float(np.linalg.norm(of_bones))
     apart = np.any((vertices.max(0) < ends.min(0)) | (vertices.min(0) > ends.max(0)))
     if not small or not np.isfinite(large):
         return
     if not _TOO_SMALL * small <= large <= _TOO_LARGE * small:
         warnings.warn(
-            f"{sizes}: the one is {large / small:.3g} times the other, so they seem to be in different units, "
-            "and weights between them say nothing. Scale one to the unit of the other",
+            f"{sizes}: the one is {large / small:.3g} times the other, so they seem to be in different "
+            "units, and weights between them say nothing. Scale one to the unit of the other",
             SkinWarning,
             stacklevel=3,
         )

@@ -1,7 +1,7 @@
-"""The bones that carry a mesh: a segment from each joint to each of its children, which turns with the joint.
+"""The bones that carry a mesh: a segment from each joint to each of its children, turning with the joint.
 
-That is the rule ``per_child`` of :func:`gmr.bones`, except for what has no length: a stub of 0.1 file units is
-for eyes, and would carry a mesh in metres or in inches differently.
+That is the rule ``per_child`` of :func:`gmr.bones`, except for what has no length: a stub of 0.1 file units
+is for eyes, and would carry a mesh in metres and one in inches differently.
 
 Source: spec "Joints, bones and tails" and "Skinning".
 """
@@ -45,9 +45,9 @@ class BoneSegments(NamedTuple):
 def bone_segments(skeleton: Skeleton, joints: Iterable[str | int] | None = None) -> BoneSegments:
     """The bones of some joints, at home and at rest.
 
-    A leaf without ``End Site`` goes on as the bone before it does, as far again; so does one whose ``End Site``
-    has no length. Between joints at one place there is no bone; a joint whose children are all where it is has
-    none. A skeleton of one place only has bones without length.
+    A leaf without ``End Site`` goes on as the bone before it does, as far again; so does one whose
+    ``End Site`` has no length. Between joints at one place there is no bone; a joint whose children are all
+    where it is has none. A skeleton of one place only has bones without length.
 
     Args:
         skeleton: J joints.
@@ -67,8 +67,7 @@ def bone_segments(skeleton: Skeleton, joints: Iterable[str | int] | None = None)
     for joint in wanted:
         below = [child for child in home.children[joint] if ends[child] != End.TIP]
         tails = [child for child in below if np.linalg.norm(places[child] - places[joint]) > shortest]
-        for child in tails:
-            found.append((joint, places[child], meeting[joint], meeting[child]))
+        found += [(joint, places[child], meeting[joint], meeting[child]) for child in tails]
         if not tails and all(ends[child] == End.SITE for child in below):
             before = _place_before(home, joint, places, shortest)
             # No other bone ends where this one does: the number is its own.
@@ -125,4 +124,5 @@ def _place_before(skeleton: Skeleton, joint: int, places: Floats, shortest: floa
     above = int(skeleton.parents[joint])
     while above >= 0 and np.linalg.norm(places[joint] - places[above]) <= shortest:
         above = int(skeleton.parents[above])
-    return places[above] if above >= 0 else places[joint]
+    found: Floats = places[above if above >= 0 else joint]
+    return found
