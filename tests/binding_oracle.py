@@ -71,10 +71,11 @@ def defined(figure: Figure) -> tuple[Array, NDArray[np.intp]]:
         children, parent = skeleton.children[j], skeleton.parents[j]
         if skeleton.ends[j] == End.SITE:
             continue
-        bones += [(j, places[j], places[c], parent < 0, skeleton.ends[c] == End.SITE) for c in children]
+        alone = parent < 0 and len(children) < 2
+        bones += [(j, places[j], places[c], alone, skeleton.ends[c] == End.SITE) for c in children]
         if not children:
             before = places[parent] if parent >= 0 else places[j]
-            bones.append((j, places[j], 2 * places[j] - before, parent < 0, True))
+            bones.append((j, places[j], places[j] + 1.5 * (places[j] - before), alone, True))
     owners = np.array([bone[0] for bone in bones])
     heads, tails = np.array([bone[1] for bone in bones]), np.array([bone[2] for bone in bones])
     open_head, open_tail = np.array([bone[3:] for bone in bones]).T

@@ -194,7 +194,7 @@ def test_one_joint_takes_all(method: BindMethod) -> None:
 
 
 def test_an_end_site_ends_its_parents_bone_and_carries_nothing() -> None:
-    offsets = [(0, 0, 0), (4, 0, 0), (4, 0, 0)]
+    offsets = [(0, 0, 0), (4, 0, 0), (6, 0, 0)]
     skeleton = Skeleton.post_rotation(["a", "b", "b_end"], [-1, 0, 1], offsets, ends=[0, 0, End.SITE])
     vertices, faces = tube(8.0, 0.3, 41)
     found = weights_of(Figure(vertices, faces, skeleton), "gradient")

@@ -8,6 +8,7 @@ Source: spec "Joints, bones and tails" and "Skinning".
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -25,6 +26,10 @@ Floats = NDArray[np.float64]
 _SHORTEST = 1e-6
 """Diagonals of the skeleton's box: joints nearer to each other than this are at one place."""
 
+_LEAF = 1.5
+"""How long a leaf's bone is, in lengths of the bone before it. Artists' weights of a man and of a fox are met
+better than with 1, which is met better than 0.5."""
+
 _SHOWN = 8
 """Names that an error lists; the others it counts."""
 
@@ -39,15 +44,15 @@ class BoneSegments(NamedTuple):
     tails: Floats
     """(B, 3) file units."""
     open: NDArray[np.bool_]
-    """(B, 2) whether no bone of another joint meets this one at its head, at its tail."""
+    """(B, 2) whether no other bone meets this one at its head, at its tail."""
 
 
 def bone_segments(skeleton: Skeleton, joints: Iterable[str | int] | None = None) -> BoneSegments:
     """The bones of some joints, at home and at rest.
 
-    A leaf without ``End Site`` goes on as the bone before it does, as far again; so does one whose
-    ``End Site`` has no length. Between joints at one place there is no bone; a joint whose children are all
-    where it is has none. A skeleton of one place only has bones without length.
+    A leaf without ``End Site`` goes on as the bone before it does, :data:`_LEAF` times as far; so does one
+    whose ``End Site`` has no length. Between joints at one place there is no bone; a joint whose children are
+    all where it is has none. A skeleton of one place only has bones without length.
 
     Args:
         skeleton: J joints.
@@ -71,23 +76,21 @@ def bone_segments(skeleton: Skeleton, joints: Iterable[str | int] | None = None)
         if not tails and all(ends[child] == End.SITE for child in below):
             before = _place_before(home, joint, places, shortest)
             # No other bone ends where this one does: the number is its own.
-            found.append((joint, 2 * places[joint] - before, meeting[joint], -1 - joint))
+            tail = places[joint] + _LEAF * (places[joint] - before)
+            found.append((joint, tail, meeting[joint], -1 - joint))
     if not found:
         names = [home.names[joint] for joint in wanted]
         raise SkeletonError(
             f"no bone is there to carry a mesh: {quoted(names, _SHOWN) or 'no joint'} has none. "
             "Name joints whose children are elsewhere than they"
         )
-    owners: dict[int, set[int]] = {}
-    for joint, _, *points in found:
-        for point in points:
-            owners.setdefault(point, set()).add(joint)
+    met = Counter(point for _, _, *points in found for point in points)
     carriers = np.array([joint for joint, *_ in found], np.int32)
     return BoneSegments(
         joints=carriers,
         heads=places[carriers],
         tails=np.array([tail for _, tail, *_ in found]),
-        open=np.array([[len(owners[point]) == 1 for point in points] for _, _, *points in found]),
+        open=np.array([[met[point] == 1 for point in points] for _, _, *points in found]),
     )
 
 

@@ -46,7 +46,7 @@ pub struct Bind<'a> {
     pub tails: &'a [f64],
     /// (B,) the joint that turns each; several bones may have one joint.
     pub joints: &'a [i32],
-    /// (B, 2) whether nothing meets a bone at its head, at its tail: there it does not fall off, and its box is open.
+    /// (B, 2) whether no other meets a bone at its head, at its tail: there it does not fall off, and its box is open.
     pub open: &'a [[bool; 2]],
     /// Threads, 0 for all cores; the bits do not depend on them.
     pub threads: usize,

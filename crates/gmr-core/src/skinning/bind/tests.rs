@@ -26,10 +26,11 @@ impl Scene {
                 let before = if joint == 0 { place - DVec3::Y } else { self.places[self.parents[joint]] };
                 tails.push((2.0 * place - before, true));
             }
+            let alone = joint == 0 && tails.len() == 1;
             for (tail, is_leaf) in tails {
                 ends.push([place, tail]);
                 joints.push(joint as i32);
-                open.push([joint == 0, is_leaf]);
+                open.push([alone, is_leaf]);
             }
         }
         (ends, joints, open)
