@@ -261,6 +261,8 @@ def test_what_cannot_be_bound_is_refused_and_named(method: BindMethod) -> None:
     lost[7, 1] = np.nan
     wrong: list[tuple[object, object, str]] = [
         (lost, faces, r"vertex 7 lies at \[0.0, [nN]a[nN]"),
+        (np.where(np.isnan(lost), -np.inf, lost), faces, r"vertex 7 lies at .* 0 more"),
+        (vertices * 1e200, faces, "vertex .*, and 59 more are like it"),
         (np.zeros((0, 3)), np.zeros((0, 3), int), "no vertices"),
         (vertices[:, :2], faces, r"vertices has shape \(60, 2\)"),
         (vertices, faces[:, :2], r"faces has shape \(96, 2\)"),

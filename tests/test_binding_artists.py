@@ -53,7 +53,8 @@ def character(file: str) -> Character:
 
 
 def at_rest(of: Character) -> NDArray[np.float32]:
-    return of.skin(of.rest_pose())[0]
+    found: NDArray[np.float32] = of.skin(of.rest_pose())[0]
+    return found
 
 
 def artists_weights(of: Character) -> Array:

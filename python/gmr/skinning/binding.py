@@ -18,7 +18,7 @@ from gmr.arrays import read_only
 from gmr.errors import SkinError, SkinWarning
 from gmr.listing import listed
 from gmr.skeleton import Skeleton
-from gmr.skinning.bone_segments import BoneSegments, bone_segments
+from gmr.skinning.bone_segments import FARTHEST, BoneSegments, bone_segments
 from gmr.threads import thread_count
 
 __all__ = ["BindMethod", "Binding", "BindingReport", "bind"]
@@ -170,6 +170,12 @@ def _places(vertices: ArrayLike) -> NDArray[np.float64]:
         raise SkinError(f"vertices has shape {np.shape(vertices)}; give (V, 3)")
     if not len(found):
         raise SkinError("the mesh has no vertices, so there is nothing to bind")
+    lost = np.flatnonzero(~(np.abs(found) <= FARTHEST).all(axis=1))
+    if len(lost):
+        raise SkinError(
+            f"vertex {lost[0]} lies at {found[lost[0]].tolist()}, and {len(lost) - 1} more are like it; "
+            f"places are finite, and no number is beyond {FARTHEST:g}"
+        )
     return found
 
 
@@ -194,7 +200,7 @@ def _warn_of_units(vertices: NDArray[np.float64], bones: BoneSegments) -> None:
     sizes = f"the mesh's box is {_by(of_mesh)}, that of the skeleton's bones {_by(of_bones)}"
     large, small = float(np.linalg.norm(of_mesh)), float(np.linalg.norm(of_bones))
     apart = np.any((vertices.max(0) < ends.min(0)) | (vertices.min(0) > ends.max(0)))
-    if not small or not np.isfinite(large):
+    if not small:
         return
     if not _TOO_SMALL * small <= large <= _TOO_LARGE * small:
         warnings.warn(

@@ -19,9 +19,12 @@ from gmr.errors import SkeletonError
 from gmr.listing import quoted
 from gmr.skeleton import End, Skeleton
 
-__all__ = ["BoneSegments", "bone_segments", "rest_places"]
+__all__ = ["FARTHEST", "BoneSegments", "bone_segments", "rest_places"]
 
 Floats = NDArray[np.float64]
+
+FARTHEST = 1e100
+"""The largest number in a place: squares of such are numbers still."""
 
 _SHORTEST = 1e-6
 """Diagonals of the skeleton's box: joints nearer to each other than this are at one place."""
@@ -104,10 +107,10 @@ def rest_places(skeleton: Skeleton) -> Floats:
     for joint in skeleton.parents_first:
         if skeleton.parents[joint] >= 0:
             places[joint] += places[skeleton.parents[joint]]
-        if not np.isfinite(places[joint]).all():
+        if not (np.abs(places[joint]) <= FARTHEST).all():
             raise SkeletonError(
                 f"joint '{skeleton.names[joint]}' is at {places[joint].tolist()} at rest; "
-                f"its offset is {skeleton.offsets[joint].tolist()}, and offsets must be finite"
+                f"its offset is {skeleton.offsets[joint].tolist()}, and no number may be beyond {FARTHEST:g}"
             )
     return places
 

@@ -46,19 +46,19 @@ def heat_weights(vertices: Floats, faces: NDArray[np.int32], bones: BoneSegments
     Vertices at one place are one; what no surface reaches, loose vertices, follows its nearest bone.
 
     Args:
-        vertices: (V, 3).
+        vertices: (V, 3), finite.
         faces: (T, 3).
         bones: B of them.
 
     Raises:
-        SkinError: a vertex is not finite, or a triangle names one that is not there.
+        SkinError: a triangle names a vertex that is not there.
         MissingExtraError: SciPy is not installed.
     """
     try:
         from scipy.sparse.linalg import splu
     except ImportError as error:
         raise MissingExtraError("scipy", "heat", "Binding by bone heat") from error
-    _check(vertices, faces)
+    _check(faces, len(vertices))
     places, inverse = np.unique(vertices + 0.0, axis=0, return_inverse=True)
     welded = inverse.reshape(-1)[faces]
     middle = places.mean(axis=0)
@@ -83,14 +83,11 @@ def heat_weights(vertices: Floats, faces: NDArray[np.int32], bones: BoneSegments
     return joints[inverse], weights[inverse], np.zeros(0, np.uint32), torn, torn
 
 
-def _check(vertices: Floats, faces: NDArray[np.int32]) -> None:
-    lost = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
-    if len(lost):
-        raise SkinError(f"vertex {lost[0]} lies at {vertices[lost[0]].tolist()}; places are finite")
-    wrong = np.argwhere((faces < 0) | (faces >= len(vertices)))
+def _check(faces: NDArray[np.int32], vertex_count: int) -> None:
+    wrong = np.argwhere((faces < 0) | (faces >= vertex_count))
     if len(wrong):
         face, corner = wrong[0].tolist()
-        raise SkinError(f"triangle {face} names vertex {faces[face, corner]}, but there are {len(vertices)}")
+        raise SkinError(f"triangle {face} names vertex {faces[face, corner]}, but there are {vertex_count}")
 
 
 def _distances(places: Floats, heads: Floats, tails: Floats) -> Floats:
