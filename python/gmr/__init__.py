@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         MissingExtraError,
         SkeletonError,
         SkinError,
+        SkinWarning,
     )
     from gmr.evaluation.evaluate import evaluate
     from gmr.evaluation.result import Evaluation
@@ -44,6 +45,7 @@ __all__ = [
     "Skeleton",
     "SkeletonError",
     "SkinError",
+    "SkinWarning",
     "__version__",
     "bones",
     "concatenate",
@@ -79,6 +81,7 @@ _HOMES = {
     "Skeleton": "gmr.skeleton",
     "SkeletonError": "gmr.errors",
     "SkinError": "gmr.errors",
+    "SkinWarning": "gmr.errors",
     "__version__": "gmr._core",
     "bones": "gmr.bone_tails",
     "concatenate": "gmr.concatenation",

@@ -528,6 +528,24 @@ def trial_positions(
 
 # --- skinning ---
 
+def bind_skin(
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    heads: NDArray[np.float64],
+    tails: NDArray[np.float64],
+    joints: NDArray[np.int32],
+    open: NDArray[np.bool_],
+    threads: int = 1,
+) -> tuple[NDArray[np.int32], NDArray[np.float32], NDArray[np.uint32], int, int]:
+    """Joints and weights (V, 4), strongest first, of (V, 3) vertices with 3 T faces that follow the bones
+    from heads to tails (B, 3), each turned by its joint (B,) and open at head, tail (B, 2) where no other
+    meets it; the vertices in no box; the edges that were torn, and those that still are.
+
+    Raises:
+        ValueError: when lengths do not fit, a place is not finite, or a face names a vertex that is not
+            there.
+    """
+
 class Skin:
     """A mesh at rest and the joints that its vertices follow: (V, 3), (V, K), (V, K), (V, 3), C-contiguous.
 

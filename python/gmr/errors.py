@@ -12,6 +12,7 @@ __all__ = [
     "MissingExtraError",
     "SkeletonError",
     "SkinError",
+    "SkinWarning",
 ]
 
 
@@ -58,6 +59,10 @@ class SkeletonError(GmrError, ValueError):
 
 class SkinError(GmrError, ValueError):
     """A mesh that cannot follow its joints, or transforms that do not fit it."""
+
+
+class SkinWarning(UserWarning):
+    """A mesh and a skeleton that fit each other oddly; says how, and what to do."""
 
 
 class DatasetError(GmrError, ValueError):

@@ -1,7 +1,8 @@
 //! Skins over NumPy arrays.
 
+use gmr_core::skinning::bind::{Bind, INFLUENCES, bind};
 use gmr_core::skinning::{self, Blend, Blended, Hemisphere, Method, Skin};
-use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -85,6 +86,49 @@ impl PySkin {
     }
 }
 
+/// What binding gives: joints and weights (V, 4), the vertices in no box, torn edges before and after.
+type Bindings<'py> =
+    (Bound<'py, PyArray2<i32>>, Bound<'py, PyArray2<f32>>, Bound<'py, PyArray1<u32>>, usize, usize);
+
+/// Binds (V, 3) vertices of 3 T `faces` to the bones from `heads` to `tails` (B, 3), which (B,) `joints` turn.
+#[pyfunction]
+#[pyo3(signature = (vertices, faces, heads, tails, joints, open, threads=1))]
+#[allow(clippy::too_many_arguments)]
+fn bind_skin<'py>(
+    py: Python<'py>,
+    vertices: PyReadonlyArray2<'py, f64>,
+    faces: PyReadonlyArray1<'py, i32>,
+    heads: PyReadonlyArray2<'py, f64>,
+    tails: PyReadonlyArray2<'py, f64>,
+    joints: PyReadonlyArray1<'py, i32>,
+    open: PyReadonlyArray2<'py, bool>,
+    threads: usize,
+) -> PyResult<Bindings<'py>> {
+    let (open, rest) = open.as_slice()?.as_chunks::<2>();
+    if !rest.is_empty() {
+        return Err(PyValueError::new_err("open has two columns, head and tail"));
+    }
+    let job = Bind {
+        vertices: vertices.as_slice()?,
+        faces: faces.as_slice()?,
+        heads: heads.as_slice()?,
+        tails: tails.as_slice()?,
+        joints: joints.as_slice()?,
+        open,
+        threads,
+    };
+    let bound = py.detach(|| bind(&job)).map_err(value_error)?;
+    let shape = [vertices.shape()[0], INFLUENCES];
+    Ok((
+        PyArray1::from_vec(py, bound.joints).reshape(shape)?,
+        PyArray1::from_vec(py, bound.weights).reshape(shape)?,
+        PyArray1::from_vec(py, bound.outside),
+        bound.torn,
+        bound.still_torn,
+    ))
+}
+
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(bind_skin, module)?)?;
     module.add_class::<PySkin>()
 }

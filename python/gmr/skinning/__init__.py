@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from gmr.skinning.appearance import Material, Texture, TextureUse
+    from gmr.skinning.binding import Binding, BindingReport, BindMethod, bind
     from gmr.skinning.blending import Hemisphere, Method, Skin
     from gmr.skinning.character import Character
     from gmr.skinning.keyframes import Animation, Channel
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Animation",
+    "BindMethod",
+    "Binding",
+    "BindingReport",
     "Channel",
     "Character",
     "Hemisphere",
@@ -24,11 +28,15 @@ __all__ = [
     "Skin",
     "Texture",
     "TextureUse",
+    "bind",
 ]
 
 # Imported when first used: a reader of files needs no kernels, and a kernel no files.
 _HOMES = {
     "Animation": "gmr.skinning.keyframes",
+    "BindMethod": "gmr.skinning.binding",
+    "Binding": "gmr.skinning.binding",
+    "BindingReport": "gmr.skinning.binding",
     "Channel": "gmr.skinning.keyframes",
     "Character": "gmr.skinning.character",
     "Hemisphere": "gmr.skinning.blending",
@@ -39,6 +47,7 @@ _HOMES = {
     "Skin": "gmr.skinning.blending",
     "Texture": "gmr.skinning.appearance",
     "TextureUse": "gmr.skinning.appearance",
+    "bind": "gmr.skinning.binding",
 }
 
 

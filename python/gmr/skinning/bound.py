@@ -40,7 +40,7 @@ def bound(
     Raises:
         GmrError: there is no vertex to bind, or the binding gives what fits no mesh.
     """
-    from gmr.skinning.binding import bind  # type: ignore[import-not-found, unused-ignore]
+    from gmr.skinning.binding import bind
 
     home = skeleton if skeleton.home is None else skeleton.home
     counts = np.cumsum([0, *(len(part.vertices) for part in parts)])

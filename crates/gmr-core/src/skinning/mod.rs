@@ -16,9 +16,12 @@
 //! `scalar` is the definition, one vertex at a time; `block` does the same for as many vertices at once as a register
 //! holds, and every instruction set gives the same bits.
 //!
+//! [`bind`] finds which joints a mesh should follow.
+//!
 //! Sources: Kavan et al. 2007, "Skinning with Dual Quaternions"; Le and Hodgins 2016, "Real-time Skeletal Skinning
 //! with Optimized Centers of Rotation".
 
+pub mod bind;
 mod blend;
 mod block;
 mod bones;
