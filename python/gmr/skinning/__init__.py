@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from gmr.skinning.binding import Binding, BindingReport, BindMethod, bind
     from gmr.skinning.blending import Hemisphere, Method, Skin
     from gmr.skinning.character import Character
+    from gmr.skinning.driven import Driven, DrivingReport
+    from gmr.skinning.driving import drive
     from gmr.skinning.keyframes import Animation, Channel
     from gmr.skinning.nodes import Nodes
     from gmr.skinning.part import Part
@@ -20,6 +22,8 @@ __all__ = [
     "BindingReport",
     "Channel",
     "Character",
+    "Driven",
+    "DrivingReport",
     "Hemisphere",
     "Material",
     "Method",
@@ -29,6 +33,7 @@ __all__ = [
     "Texture",
     "TextureUse",
     "bind",
+    "drive",
 ]
 
 # Imported when first used: a reader of files needs no kernels, and a kernel no files.
@@ -39,6 +44,8 @@ _HOMES = {
     "BindingReport": "gmr.skinning.binding",
     "Channel": "gmr.skinning.keyframes",
     "Character": "gmr.skinning.character",
+    "Driven": "gmr.skinning.driven",
+    "DrivingReport": "gmr.skinning.driven",
     "Hemisphere": "gmr.skinning.blending",
     "Material": "gmr.skinning.appearance",
     "Method": "gmr.skinning.blending",
@@ -48,6 +55,7 @@ _HOMES = {
     "Texture": "gmr.skinning.appearance",
     "TextureUse": "gmr.skinning.appearance",
     "bind": "gmr.skinning.binding",
+    "drive": "gmr.skinning.driving",
 }
 
 

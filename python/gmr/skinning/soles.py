@@ -1,0 +1,91 @@
+"""Soles: the points of a character's feet that may touch the ground, and how high the lowest of them is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.quaternions import rotated
+from gmr.skinning.character import Character
+
+__all__ = ["Sole", "heights", "sole_of"]
+
+Floats = NDArray[np.float64]
+
+_OWN = 0.5
+"""Weight above which a vertex goes with the foot."""
+_DIRECTIONS = 16
+"""Around the vertical, in which the outermost points are looked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sole:
+    """Points of a foot.
+
+    Args:
+        joints: (N,) the joint that carries each.
+        vectors: (N, 3) metres from that joint at rest.
+        by_mesh: whether they are of the mesh; else below the joints, which then are as high as at rest.
+    """
+
+    joints: NDArray[np.int32]
+    vectors: Floats
+    by_mesh: bool
+
+
+def sole_of(character: Character, ankle: int) -> Sole:
+    """The outermost points of what the joints from the ankle down carry; of those joints themselves, laid down
+    to the lowest, where they carry nothing."""
+    rest = character.rest_pose()[:, :3, 3]
+    parents = character.joint_parents
+    foot = [j for j in character.skeleton.parents_first if j == ankle or _is_below(parents, j, ankle)]
+    found = _carried(character, foot) if character.skinned_parts else None
+    if found is None:
+        lowest = rest[foot, 1].min()
+        points = rest[foot] * np.array([1.0, 0, 1]) + np.array([0, lowest, 0])
+        return Sole(np.array(foot, np.int32), points - rest[foot], by_mesh=False)
+    joints, points = found
+    outer = _outermost(points)
+    return Sole(joints[outer], points[outer] - rest[joints[outer]], by_mesh=True)
+
+
+def _is_below(parents: NDArray[np.int32], joint: int, top: int) -> bool:
+    here = int(parents[joint])
+    while here >= 0 and here != top:
+        here = int(parents[here])
+    return here == top
+
+
+def _carried(character: Character, foot: list[int]) -> tuple[NDArray[np.int32], Floats] | None:
+    """The vertices that go with the foot: the joint that carries each most, and their places at rest."""
+    merged = character.merged
+    joints = merged.joints % len(character.joints)
+    shares = np.stack([np.where(joints == joint, merged.weights, 0).sum(axis=1) for joint in foot], axis=1)
+    own = shares.sum(axis=1) > _OWN
+    if not own.any():
+        return None
+    places = character.skin(character.rest_pose())[0, own].astype(np.float64)
+    return np.array(foot, np.int32)[shares[own].argmax(axis=1)], places
+
+
+def _outermost(points: Floats) -> NDArray[np.intp]:
+    """Indices of the points that are farthest in directions of the lower half and a little above."""
+    around = np.linspace(0, 2 * np.pi, _DIRECTIONS, endpoint=False)
+    down = np.linspace(-np.pi / 2, np.pi / 6, 9)
+    a, d = np.meshgrid(around, down)
+    ways = np.stack([np.cos(d) * np.cos(a), np.sin(d), np.cos(d) * np.sin(a)], axis=-1).reshape(-1, 3)
+    return np.unique((points @ ways.T).argmax(axis=0))
+
+
+def heights(sole: Sole, turns: Floats, places: Floats) -> Floats:
+    """(F,) height of the lowest point.
+
+    Args:
+        sole: of a foot.
+        turns: (F, J, 4) of the character's joints, from rest.
+        places: (F, J, 3) of the character's joints.
+    """
+    points = places[:, sole.joints, 1] + rotated(turns[:, sole.joints], sole.vectors)[..., 1]
+    return np.asarray(points.min(axis=1), np.float64)

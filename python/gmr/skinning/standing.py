@@ -1,0 +1,269 @@
+"""A driven character's feet on the ground: each where the motion's foot is, its sole on the floor in contacts.
+
+The ankle goes where the motion's goes, in the character's measure, corrected for a foot of another shape, so
+that a ball that rests in the motion rests in the character. Whatever the sole lacks to the floor is added,
+smoothly; hips sink where a leg is too short; thigh and shin reach by :func:`gmr.editing.two_bone`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.editing.contacts import Contact, slide
+from gmr.editing.easing import blend_weights, eased, smooth_above
+from gmr.editing.two_bone import two_bone
+from gmr.quaternions import about, multiply, rotated
+from gmr.skinning.puppet import Puppet, strung
+from gmr.skinning.soles import Sole, heights, sole_of
+
+__all__ = ["FootReport", "Leg", "Steps", "measured_feet", "stood"]
+
+Floats = NDArray[np.float64]
+
+_UP = np.array([0.0, 1.0, 0.0])
+_BLEND = 0.1
+"""Seconds over which a foot comes to the ground and leaves it."""
+_SINKING = 0.4
+"""Seconds over which hips come down and rise again."""
+_NEARLY_STRAIGHT = 0.998
+"""Share of its length to which a leg may be straightened, unless it was straighter before."""
+_STEP = 0.05
+"""Metres, in the motion, by which one contact must be higher than the others to be on a step."""
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """How a foot of the motion goes, in the character's measure: metres, +Y up.
+
+    Args:
+        ankle: (F, 3)
+        ball: (F, 3) the joint of the contacts.
+        turn: (F, 4) turn of the foot from the motion's rest.
+        vector: (3,) from the ankle to the ball at rest.
+        contacts: when the foot is on the ground.
+        metre: of the motion, in the character's measure.
+    """
+
+    ankle: Floats
+    ball: Floats
+    turn: Floats
+    vector: Floats
+    contacts: tuple[Contact, ...]
+    metre: float
+
+
+@dataclass(frozen=True, eq=False)
+class Leg:
+    """A leg of the character that follows one of the motion.
+
+    Args:
+        side: "left" or "right".
+        hip, knee, ankle: joints of the character.
+        toe: the ball; None where it has none.
+        vector: (3,) from the ankle to the ball, at rest laid on the motion's rest.
+        hinge: (3,) the knee's axis at rest: to the left of the character.
+        steps: of the motion's foot.
+    """
+
+    side: str
+    hip: int
+    knee: int
+    ankle: int
+    toe: int | None
+    vector: Floats | None
+    hinge: Floats
+    steps: Steps
+
+
+@dataclass(frozen=True)
+class FootReport:
+    """How a foot stands, in millimetres.
+
+    Args:
+        side: "left" or "right".
+        contacts: how many there are in the motion.
+        source_slide_mm: mean way of the ball along the ground in a contact of the motion.
+        slide_mm: the same of the character.
+        height_mm: greatest distance of the lowest point of the sole from the ground in contacts.
+        lowest_mm: of the sole in the whole clip, above the ground; negative: below it.
+    """
+
+    side: str
+    contacts: int
+    source_slide_mm: float
+    slide_mm: float
+    height_mm: float
+    lowest_mm: float
+
+
+def stood(puppet: Puppet, legs: Sequence[Leg], anchor: int, frame_time: float) -> tuple[Puppet, float, Floats]:
+    """The character with its feet on the ground.
+
+    Args:
+        puppet: driven.
+        legs: at least one.
+        anchor: the joint that has a place of its own.
+        frame_time: seconds.
+
+    Returns:
+        The character, by how many metres it was raised as a whole, and (F,) metres by which the hips sank.
+    """
+    soles = [sole_of(puppet.character, leg.ankle) for leg in legs]
+    floor = floor_of(puppet, soles)
+    fps = 1 / frame_time if frame_time else 0
+    blend = max(round(_BLEND * fps), 1)
+    targets = [_ankle(leg, blend) for leg in legs]
+    above = [
+        _heights_at(puppet, leg, sole, target) - floor for leg, sole, target in zip(legs, soles, targets, strict=True)
+    ]
+    levels = _levels(legs)
+    raised = _raised(legs, above, levels)
+    for leg, target, height, level in zip(legs, targets, above, levels, strict=True):
+        target[:, 1] += raised + _lacking(leg, height + raised, level, blend)
+    place = puppet.places[:, anchor] + raised * _UP
+    lifted = strung(puppet.character, puppet.turns, anchor, place)
+    sunk = _sinking(lifted, legs, targets, round(_SINKING * fps))
+    lowered = strung(puppet.character, puppet.turns, anchor, place - sunk[:, None] * _UP)
+    turns = lowered.turns.copy()
+    for leg, target in zip(legs, targets, strict=True):
+        _bend(lowered, leg, target, turns)
+    return strung(puppet.character, turns, anchor, lowered.places[:, anchor]), raised, sunk
+
+
+def floor_of(puppet: Puppet, soles: Sequence[Sole]) -> float:
+    """Height of the soles at rest."""
+    rest = puppet.character.rest_pose()[:, :3, 3]
+    return float(min((rest[sole.joints] + sole.vectors)[:, 1].min() for sole in soles))
+
+
+def _ankle(leg: Leg, blend: int) -> Floats:
+    """(F, 3) where the ankle is to be.
+
+    A foot of another shape is turned about its ball rather than its ankle: with ``d`` what the motion's vector
+    to the ball has over the character's, the ankle is moved by ``F d`` less what that is while the foot is
+    flat. The heading of the flat foot is held in contacts, so that the ball does not slide where it turns.
+    """
+    steps = leg.steps
+    if leg.vector is None:
+        return steps.ankle.copy()
+    more = steps.vector - leg.vector
+    heading = np.unwrap(2 * np.arctan2(steps.turn[:, 1], steps.turn[:, 3]))
+    held = np.zeros((len(heading), 1))
+    for one in steps.contacts:
+        there = heading[one.first : one.end]
+        held[one.first : one.end, 0] = np.median(there) - there
+    held = eased(held, [(one.first, one.end) for one in steps.contacts], blend)
+    return steps.ankle + rotated(steps.turn, more) - rotated(about(_UP, heading + held[:, 0]), more)
+
+
+def _heights_at(puppet: Puppet, leg: Leg, sole: Sole, ankle: Floats) -> Floats:
+    """(F,) height of the sole with the ankle there."""
+    places = puppet.places + (ankle - puppet.places[:, leg.ankle])[:, None]
+    return heights(sole, puppet.turns, places)
+
+
+def _levels(legs: Sequence[Leg]) -> list[Floats]:
+    """(F,) for each leg: how high the ground is in contacts: 0, but where a foot stands on a step."""
+    usual = np.concatenate([leg.steps.ball[one.first : one.end, 1] for leg in legs for one in leg.steps.contacts] or [[0.0]])
+    found = []
+    for leg in legs:
+        level = np.zeros(len(leg.steps.ball))
+        for one in leg.steps.contacts:
+            here = float(np.median(leg.steps.ball[one.first : one.end, 1]) - np.median(usual))
+            level[one.first : one.end] = here if abs(here) > _STEP * leg.steps.metre else 0.0
+        found.append(level)
+    return found
+
+
+def _raised(legs: Sequence[Leg], above: Sequence[Floats], levels: Sequence[Floats]) -> float:
+    """By how much the whole is raised: what contacts lack in the middle, or else the lowest frame."""
+    lacking = [
+        (level - height)[one.first : one.end]
+        for leg, height, level in zip(legs, above, levels, strict=True)
+        for one in leg.steps.contacts
+    ]
+    if lacking:
+        return float(np.median(np.concatenate(lacking)))
+    return -float(min(height.min(initial=np.inf) for height in above)) if len(above[0]) else 0.0
+
+
+def _lacking(leg: Leg, height: Floats, level: Floats, blend: int) -> Floats:
+    """(F,) what the foot is raised by: to the ground in contacts, out of it elsewhere, smoothly between."""
+    contacts = leg.steps.contacts
+    weights = [blend_weights(len(height), one.first, one.end, blend) for one in contacts]
+    weight = np.max([np.zeros(len(height)), *weights], axis=0)
+    return weight * (level - height) + (1 - weight) * np.maximum(-height, 0)
+
+
+def _sinking(puppet: Puppet, legs: Sequence[Leg], targets: Sequence[Floats], width: int) -> Floats:
+    """(F,) by how much the hips must sink for the legs to reach: ``h - sqrt(l^2 - r^2)``, smoothed."""
+    lacking = np.zeros(len(puppet.places))
+    for leg, target in zip(legs, targets, strict=True):
+        longest = _longest(puppet, leg)
+        apart = puppet.places[:, leg.hip] - target
+        beside = apart[:, 0] ** 2 + apart[:, 2] ** 2
+        needed = apart[:, 1] - np.sqrt(np.maximum(longest * longest - beside, 0))
+        is_short = np.linalg.norm(apart, axis=1) > longest * (1 + 1e-9)
+        lacking = np.maximum(lacking, np.where(is_short, np.clip(needed, 0, 0.25 * longest), 0))
+    return smooth_above(lacking, width)
+
+
+def _longest(puppet: Puppet, leg: Leg) -> Floats:
+    """(F,) how far the ankle may be from the hip."""
+    hip, knee, ankle = (puppet.places[:, joint] for joint in (leg.hip, leg.knee, leg.ankle))
+    straight = np.linalg.norm(knee - hip, axis=1) + np.linalg.norm(ankle - knee, axis=1)
+    return np.asarray(np.maximum(np.linalg.norm(ankle - hip, axis=1), _NEARLY_STRAIGHT * straight), np.float64)
+
+
+def _bend(puppet: Puppet, leg: Leg, target: Floats, turns: Floats) -> None:
+    """Turns thigh and shin, and what hangs on them above the ankle, into ``turns``."""
+    hip, knee, ankle = (puppet.places[:, joint] for joint in (leg.hip, leg.knee, leg.ankle))
+    hinge = rotated(puppet.turns[:, leg.hip], leg.hinge)
+    solved = two_bone(hip, knee, ankle, target, hinge)
+    parents = puppet.character.joint_parents
+    for joint in puppet.character.skeleton.parents_first:
+        above = _ancestry(parents, joint)
+        if leg.ankle in above:
+            continue
+        if leg.knee in above:
+            turns[:, joint] = multiply(solved.lower, puppet.turns[:, joint])
+        elif leg.hip in above:
+            turns[:, joint] = multiply(solved.upper, puppet.turns[:, joint])
+
+
+def _ancestry(parents: NDArray[np.int32], joint: int) -> set[int]:
+    """The joint and all above it."""
+    found = set()
+    while joint >= 0:
+        found.add(joint)
+        joint = int(parents[joint])
+    return found
+
+
+def measured_feet(puppet: Puppet, legs: Sequence[Leg]) -> tuple[FootReport, ...]:
+    """How the feet stand in the contacts of the motion."""
+    soles = [sole_of(puppet.character, leg.ankle) for leg in legs]
+    floor = floor_of(puppet, soles)
+    found = []
+    for leg, sole, level in zip(legs, soles, _levels(legs), strict=True):
+        height = heights(sole, puppet.turns, puppet.places) - floor
+        ball = puppet.places[:, leg.ankle if leg.toe is None else leg.toe]
+        contacts = leg.steps.contacts
+        off = [np.abs(height - level)[one.first : one.end].max() for one in contacts]
+        ways = [(slide(leg.steps.ball[one.first : one.end], _UP), slide(ball[one.first : one.end], _UP)) for one in contacts]
+        theirs, mine = np.mean(ways, axis=0) if ways else (0.0, 0.0)
+        found.append(
+            FootReport(
+                leg.side,
+                len(contacts),
+                1000 * float(theirs),
+                1000 * float(mine),
+                1000 * float(max(off, default=0.0)),
+                1000 * float(height.min(initial=np.inf)) if len(height) else 0.0,
+            )
+        )
+    return tuple(found)
