@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 _UP = np.array([0.0, 1.0, 0.0])
 _BLEND = 0.1
 """Seconds over which a foot comes to the ground and leaves it."""
-_SINKING = 0.4
+_SINKING = 0.2
 """Seconds over which hips come down and rise again."""
 _NEARLY_STRAIGHT = 0.998
 """Share of its length to which a leg may be straightened, unless it was straighter before."""
@@ -145,7 +145,7 @@ def _ankle(leg: Leg, blend: int) -> Floats:
 
     A foot of another shape is turned about its ball rather than its ankle: with ``d`` what the motion's vector
     to the ball has over the character's, the ankle is moved by ``F d`` less what that is while the foot is
-    flat. The heading of the flat foot is held in contacts, so that the ball does not slide where it turns.
+    flat, in contacts. The heading of the flat foot is held in contacts, so that the ball does not slide where it turns.
     """
     steps = leg.steps
     if leg.vector is None:
@@ -157,7 +157,15 @@ def _ankle(leg: Leg, blend: int) -> Floats:
         there = heading[one.first : one.end]
         held[one.first : one.end, 0] = np.median(there) - there
     held = eased(held, [(one.first, one.end) for one in steps.contacts], blend)
-    return steps.ankle + rotated(steps.turn, more) - rotated(about(_UP, heading + held[:, 0]), more)
+    moved = rotated(steps.turn, more) - rotated(about(_UP, heading + held[:, 0]), more)
+    return steps.ankle + _on_ground(leg, blend)[:, None] * moved
+
+
+def _on_ground(leg: Leg, blend: int) -> Floats:
+    """(F,) 1 in contacts, 0 away from them."""
+    count = len(leg.steps.ball)
+    weights = [blend_weights(count, one.first, one.end, blend) for one in leg.steps.contacts]
+    return np.asarray(np.max([np.zeros(count), *weights], axis=0), np.float64)
 
 
 def _heights_at(puppet: Puppet, leg: Leg, sole: Sole, ankle: Floats) -> Floats:
@@ -193,9 +201,7 @@ def _raised(legs: Sequence[Leg], above: Sequence[Floats], levels: Sequence[Float
 
 def _lacking(leg: Leg, height: Floats, level: Floats, blend: int) -> Floats:
     """(F,) what the foot is raised by: to the ground in contacts, out of it elsewhere, smoothly between."""
-    contacts = leg.steps.contacts
-    weights = [blend_weights(len(height), one.first, one.end, blend) for one in contacts]
-    weight = np.max([np.zeros(len(height)), *weights], axis=0)
+    weight = _on_ground(leg, blend)
     return weight * (level - height) + (1 - weight) * np.maximum(-height, 0)
 
 
