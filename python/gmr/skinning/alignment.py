@@ -62,6 +62,17 @@ class Pairs:
             here = int(self.character.parents[here])
         return here
 
+    @property
+    def trunk(self) -> int:
+        """The followed joint from which the limbs of something that is no known body go out; the topmost
+        where it does not branch."""
+        here = top = next(joint for joint in self.character.parents_first if joint in self.above)
+        while below := [one for one, above in self.above.items() if above == here]:
+            if len(below) > 1:
+                return here
+            (here,) = below
+        return top
+
     def base(self, joint: int) -> str:
         """The part without its side; "" where it is not known."""
         part = self.following.parts.get(joint, "")

@@ -8,7 +8,7 @@ SIGGRAPH 1998, whose constraints on the feet these are, met frame by frame in cl
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,7 @@ from gmr.skinning.character import Character
 from gmr.skinning.driven import Driven, DrivingReport
 from gmr.skinning.following import Following, Names, follow, names_for_ends, read_names, with_stated
 from gmr.skinning.puppet import Puppet, pose_matrices, strung
-from gmr.skinning.rest_poses import MotionRest, facing_turn, motion_rest, shortest_turn
+from gmr.skinning.rest_poses import MotionRest, facing_turn, motion_rest, shortest_turn, with_flat_feet
 from gmr.skinning.standing import Leg, Steps, measured_feet, stood
 from gmr.tpose import leading_rest_frames
 
@@ -89,7 +89,20 @@ def drive(
     recorded = at_home[lead:]
     moving = recorded if fps is None else recorded.resample(fps)
     stage = _Stage(moving, scene, character, following, (mine, begins), resting)
+    if "frame" in resting.said:
+        stage = replace(stage, rest=with_flat_feet(resting, recorded, scene.up, _feet(stage)))
     return _driven(stage, root_scale, ground, lead)
+
+
+def _feet(stage: _Stage) -> list[tuple[int, int | None, list[int]]]:
+    """Ankle, ball and what turns them, of the motion's feet that are followed."""
+    found = []
+    for side in ("left", "right"):
+        ankle, toe = stage.both(f"{side}_foot"), stage.both(f"{side}_toe")
+        if ankle:
+            followed = [stage.following.bones[joint[0]].carrier for joint in (ankle, toe) if joint]
+            found.append((ankle[1], toe[1] if toe else None, followed))
+    return found
 
 
 def _body_of(motion: Motion, scene: Scene, stated: dict[str, str]) -> tuple[Body | None, bool]:
@@ -165,7 +178,7 @@ def _driven(stage: _Stage, root_scale: float | None, ground: bool, lead: int) ->
     turns, anchor = _turns(stage, pairs, laid, changes, ways)
     puppet = strung(stage.character, turns, anchor, _place(stage, turns, anchor, ways))
     legs = _legs(stage, laid, changes, ways, scale)
-    before = measured_feet(puppet, legs)
+    before = measured_feet(puppet, legs) if legs else ()
     raised, sunk = 0.0, np.zeros(1)
     after = before
     if ground and legs:
@@ -208,13 +221,13 @@ def _turns(stage: _Stage, pairs: Pairs, laid: Laid, changes: Floats, ways: Float
     parents = stage.character.joint_parents
     order = stage.character.skeleton.parents_first
     hips = stage.both("hips")
-    anchor = hips[0] if hips else next(joint for joint in order if joint in bones)
+    anchor = hips[0] if hips else pairs.trunk
     turns = np.empty((len(ways), len(places), 4))
     for joint, bone in bones.items():
         turns[:, joint] = multiply(changes[:, bone.carrier], laid.turns[joint])
         led = laid.leads_to.get(joint)
-        if led is not None:
-            # Where joints between the two bend, or bones change their length, the direction is that of all.
+        if led is not None and stage.motion.skeleton.parents[bones[led].start] != bone.start:
+            # Where joints between the two bend, the direction is that of them all.
             now = rotated(turns[:, joint], places[led] - places[joint])
             wanted = ways[:, bones[led].start] - ways[:, bone.start]
             turns[:, joint] = multiply(shortest_turn(now, wanted), turns[:, joint])

@@ -6,12 +6,13 @@ import difflib
 import json
 import os
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from gmr.body.measures import path
+from gmr.body.naming import side_and_part
 from gmr.errors import FormatError, SkeletonError
 from gmr.listing import quoted
 from gmr.skeleton import Skeleton
@@ -25,6 +26,9 @@ Names = Mapping[str, Any] | str | os.PathLike[str]
 
 _TABLES = ("follows", "character", "motion")
 _SHOWN = 24
+_NEAREST = 8
+_NEAR = 0.55
+"""Likeness of names, 0 to 1, above which an error offers one."""
 _ALIKE = 0.8
 """Share of the character's joints that must be called the same for both to be one skeleton."""
 
@@ -220,15 +224,21 @@ def names_for_ends(motion: Skeleton, body: Body | None, roles: Mapping[str, int]
 def _nothing(character: Skeleton, motion: Skeleton, bodies: tuple[Body | None, Body | None]) -> str:
     """Why nothing is matched, with both sides' names and the nearest of them."""
     which = [label for label, body in zip(("character", "motion"), bodies, strict=True) if body is None]
-    near = []
-    for name in character.names:
-        (alike, *_) = difflib.get_close_matches(name, motion.names, n=1) or [""]
-        if alike:
-            near.append(f"'{name}': '{alike}'")
-    nearest = f" Nearest: {', '.join(near[:6])}." if near else ""
+    near = [f"'{name}': '{alike}'" for name in character.names if (alike := _nearest(name, motion.names))]
+    nearest = f" Nearest in name: {', '.join(near[:_NEAREST])}." if near else ""
     return (
         f"no joint of the character is matched with one of the motion: neither names nor shape tell the body of "
         f"the {' and of the '.join(which) or 'two'}. The character's joints are "
         f"{quoted(character.names, _SHOWN)}; the motion's are {quoted(motion.names, _SHOWN)}.{nearest} Say who "
         "follows whom: names={'character joint': 'motion joint', ...} in Python, --map FILE on the command line"
     )
+
+
+def _nearest(name: str, others: Sequence[str]) -> str | None:
+    """The name that is most like another, sides apart."""
+    side, part = side_and_part(name)
+    theirs = {other: side_and_part(other) for other in others}
+    same_side = [other for other, (its, _) in theirs.items() if its in (side, "")]
+    words = {theirs[other][1]: other for other in reversed(same_side)}
+    found = difflib.get_close_matches(part, list(words), n=1, cutoff=_NEAR)
+    return words[found[0]] if found else None

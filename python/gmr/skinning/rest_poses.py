@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from gmr.arrays import read_only
 from gmr.body.measures import UP_TURNS, fault, up_axis
+from gmr.editing.contacts import contacts
 from gmr.errors import GmrError
 from gmr.frames import Pose
 from gmr.motion import Motion
@@ -24,7 +25,7 @@ from gmr.skinning.body_parts import Body
 from gmr.skinning.parts import LEG_PARTS
 from gmr.tpose import leading_rest_frames
 
-__all__ = ["MotionRest", "facing_turn", "heading_turn", "motion_rest", "shortest_turn", "zero_places"]
+__all__ = ["MotionRest", "facing_turn", "heading_turn", "motion_rest", "shortest_turn", "with_flat_feet", "zero_places"]
 
 Floats = NDArray[np.float64]
 
@@ -47,11 +48,11 @@ class MotionRest:
 
 
 def zero_places(motion: Motion) -> Floats:
-    """(J, 3) places of the joints at home where nothing turns; joints that are moved by each frame where they
-    are in the middle of them."""
+    """(J, 3) places of the joints at home where nothing turns; a joint without an offset that each frame moves
+    is where it is in the middle of them."""
     pose = motion.pose
-    count = len(pose.rotations)
-    translations = np.median(pose.translations, axis=0) if count else np.zeros(pose.translations.shape[1:])
+    offsets = motion.skeleton.offsets[pose.translated]
+    translations = np.where(offsets.any(axis=1, keepdims=True), offsets, np.median(pose.translations, axis=0))
     still = np.tile(IDENTITY, (1, pose.rotations.shape[1], 1))
     zero = Pose(read_only(still), pose.translated, read_only(translations[None]))
     found = replace(motion, source=zero, dropped=None).positions(dtype=np.float64)[0]
@@ -107,6 +108,34 @@ def _of_frame(motion: Motion, frame: int, up: str) -> MotionRest:
     turn = np.array(UP_TURNS[up])
     places = rotated(turn, one.positions(dtype=np.float64)[0])
     return MotionRest(places, one.bone_rotations(dtype=np.float64)[0], turn, f"frame {frame}")
+
+
+def with_flat_feet(
+    rest: MotionRest, motion: Motion, up: str, feet: Sequence[tuple[int, int | None, Sequence[int]]]
+) -> MotionRest:
+    """The rest pose with each foot as it is where it stands flattest, for few frames have both feet flat.
+
+    That is the frame of its contacts in which its ankle is lowest; the foot of a motion without contacts stays.
+
+    Args:
+        rest: a frame of the motion.
+        motion: at home.
+        up: its axis that points up.
+        feet: (ankle, ball or None, joints whose bone rotations turn the foot) of each.
+    """
+    turn = np.array(UP_TURNS[up])
+    places, rotations = rest.places.copy(), rest.rotations.copy()
+    for ankle, ball, carriers in feet:
+        if ball is None or not motion.frame_time:
+            continue
+        held = contacts(motion, [ball]).mask[:, 0]
+        if held.any():
+            way = rotated(turn, motion.positions(dtype=np.float64, joints=[ankle, ball]))
+            flattest = int(np.where(held, way[:, 0, 1] - way[:, 1, 1], np.inf).argmin())
+            there = motion[flattest : flattest + 1].bone_rotations(dtype=np.float64)[0]
+            rotations[list(carriers)] = there[list(carriers)]
+            places[ball] = places[ankle] + way[flattest, 1] - way[flattest, 0]
+    return replace(rest, places=places, rotations=rotations)
 
 
 def _roles(body: Body | None) -> Mapping[str, int] | None:
