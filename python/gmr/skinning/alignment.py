@@ -62,6 +62,13 @@ class Pairs:
             here = int(self.character.parents[here])
         return here
 
+    def all_above(self, joint: int) -> list[int]:
+        """The followed joints above one."""
+        found = []
+        while (joint := self.nearest(joint)) >= 0:
+            found.append(joint)
+        return found
+
     @property
     def trunk(self) -> int:
         """The followed joint from which the limbs of something that is no known body go out; the topmost

@@ -118,7 +118,7 @@ def _stands(way: Floats) -> bool:
 def _arm(side: str, chain: Sequence[int], skeleton: Skeleton, rest: Floats) -> Parts:
     """The two longest bones that follow each other, as far as the chain goes on after them."""
     lengths = np.linalg.norm(np.diff(rest[list(chain)], axis=0), axis=1)
-    pairs = [k for k in range(1, len(lengths) - 1)]
+    pairs = list(range(1, len(lengths) - 1))
     if not pairs:
         return {}
     upper = max(pairs, key=lambda k: float(min(lengths[k], lengths[k + 1])))

@@ -88,13 +88,16 @@ class DrivingReport:
         if self.feet == self.feet_before:
             lines = ["feet: left as the bones' turns put them"]
         else:
-            lines = [f"feet: raised by {self.raised_mm:.1f} mm as a whole; hips sink by {self.sunk_mm:.1f} mm at most"]
+            lines = [
+                f"feet: raised by {self.raised_mm:.1f} mm as a whole; hips sink by {self.sunk_mm:.1f} mm at "
+                "most"
+            ]
         for before, after in zip(self.feet_before, self.feet, strict=True):
             lines.append(
-                f"{after.side} foot: {after.contacts} contacts; sole off the ground in them by {after.height_mm:.1f} "
-                f"mm at most (before: {before.height_mm:.1f}), lowest {after.lowest_mm:.1f} mm ({before.lowest_mm:.1f}); "
-                f"slides {after.slide_mm:.1f} mm a contact ({before.slide_mm:.1f}; the motion's own: "
-                f"{after.source_slide_mm:.1f})"
+                f"{after.side} foot: {after.contacts} contacts; sole off the ground in them by "
+                f"{after.height_mm:.1f} mm at most (before: {before.height_mm:.1f}), lowest "
+                f"{after.lowest_mm:.1f} mm ({before.lowest_mm:.1f}); slides {after.slide_mm:.1f} mm a contact "
+                f"({before.slide_mm:.1f}; the motion's own: {after.source_slide_mm:.1f})"
             )
         return lines
 

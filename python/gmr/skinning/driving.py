@@ -8,13 +8,12 @@ SIGGRAPH 1998, whose constraints on the feet these are, met frame by frame in cl
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.body.measures import UP_TURNS, path
-from gmr.editing.contacts import contacts
+from gmr.body.measures import UP_TURNS
 from gmr.editing.roles import known_roles
 from gmr.editing.scene import Scene, scene_of
 from gmr.errors import GmrError
@@ -26,10 +25,18 @@ from gmr.skinning.alignment import Laid, Pairs, lay_on
 from gmr.skinning.body_parts import Body, find_body
 from gmr.skinning.character import Character
 from gmr.skinning.driven import Driven, DrivingReport
-from gmr.skinning.following import Following, Names, follow, names_for_ends, read_names, with_stated
-from gmr.skinning.puppet import Puppet, pose_matrices, strung
-from gmr.skinning.rest_poses import MotionRest, facing_turn, motion_rest, shortest_turn, with_flat_feet
-from gmr.skinning.standing import Leg, Steps, measured_feet, stood
+from gmr.skinning.driven_legs import driven_legs, feet_of_motion
+from gmr.skinning.following import Names, follow, names_for_ends, read_names, with_stated
+from gmr.skinning.puppet import pose_matrices, strung
+from gmr.skinning.rest_poses import (
+    facing_turn,
+    motion_rest,
+    shortest_turn,
+    with_flat_feet,
+    zero_places,
+)
+from gmr.skinning.stage import Stage, scale_of
+from gmr.skinning.standing import measured_feet, stood
 from gmr.tpose import leading_rest_frames
 
 __all__ = ["drive"]
@@ -53,9 +60,9 @@ def drive(
         motion: F frames, in any unit and with any axis up; frames that a converter put before the recording
             are left out.
         character: of J joints.
-        names: who follows whom, where names and shape do not tell: character's joint -> motion's joint ("" for
-            none); or tables ``follows`` (the same), ``character`` and ``motion`` (part of the body -> joint);
-            or a TOML or JSON file of these.
+        names: who follows whom, where names and shape do not tell: character's joint -> motion's joint ("" for none);
+            or tables ``follows`` (the same), ``character`` and ``motion`` (part of the body -> joint); or a
+            TOML or JSON file of these.
         fps: frames a second of the poses; the motion's where left out.
         root_scale: metres that the character goes for a metre of the motion; the ratio of the legs' lengths
             where left out.
@@ -88,28 +95,19 @@ def drive(
     lead = leading_rest_frames(at_home)
     recorded = at_home[lead:]
     moving = recorded if fps is None else recorded.resample(fps)
-    stage = _Stage(moving, scene, character, following, (mine, begins), resting)
+    stage = Stage(moving, scene, character, following, (mine, begins), resting)
     if "frame" in resting.said:
-        stage = replace(stage, rest=with_flat_feet(resting, recorded, scene.up, _feet(stage)))
+        stage = replace(stage, rest=with_flat_feet(resting, recorded, scene.up, feet_of_motion(stage)))
     return _driven(stage, root_scale, ground, lead)
-
-
-def _feet(stage: _Stage) -> list[tuple[int, int | None, list[int]]]:
-    """Ankle, ball and what turns them, of the motion's feet that are followed."""
-    found = []
-    for side in ("left", "right"):
-        ankle, toe = stage.both(f"{side}_foot"), stage.both(f"{side}_toe")
-        if ankle:
-            followed = [stage.following.bones[joint[0]].carrier for joint in (ankle, toe) if joint]
-            found.append((ankle[1], toe[1] if toe else None, followed))
-    return found
 
 
 def _body_of(motion: Motion, scene: Scene, stated: dict[str, str]) -> tuple[Body | None, bool]:
     """The body of a motion, and whether its joints are named for the bones that end in them."""
     lead = leading_rest_frames(motion)
     first = motion[lead : lead + 1].positions(dtype=np.float64)[0]
-    body = find_body(motion.skeleton, rotated(np.array(UP_TURNS[scene.up]), first))
+    upright = [rotated(np.array(UP_TURNS[scene.up]), pose) for pose in (zero_places(motion), first)]
+    bodies = (find_body(motion.skeleton, pose) for pose in upright)
+    body = next((one for one in bodies if one is not None), None)
     by_ends = motion.acclaim is not None
     if body is not None and not by_ends and body.found_by != "shape":
         by_ends = names_for_ends(motion.skeleton, body, known_roles(motion) or {})
@@ -119,70 +117,37 @@ def _body_of(motion: Motion, scene: Scene, stated: dict[str, str]) -> tuple[Body
 def _begins(body: Body, motion: Skeleton) -> Body:
     """The body by the joints in which bones begin, where it is known by those in which they end."""
     above = np.where(motion.parents >= 0, motion.parents, np.arange(motion.joint_count))
-    return Body({part: tuple(above[list(joints)].tolist()) for part, joints in body.parts.items()}, body.found_by)
+    return Body(
+        {part: tuple(above[list(joints)].tolist()) for part, joints in body.parts.items()}, body.found_by
+    )
 
 
-@dataclass(frozen=True, eq=False)
-class _Stage:
-    """All that is known before anything moves.
-
-    Args:
-        motion: what is played.
-        scene: its unit and axes.
-        character: what plays it.
-        following: who follows whom.
-        bodies: parts of the character and of the motion, by the joints in which bones begin; None: not known.
-        rest: of the motion.
-    """
-
-    motion: Motion
-    scene: Scene
-    character: Character
-    following: Following
-    bodies: tuple[Body | None, Body | None]
-    rest: MotionRest
-
-    @property
-    def places(self) -> Floats:
-        """(J, 3) the character's joints at rest."""
-        return np.asarray(self.character.rest_pose()[:, :3, 3], np.float64)
-
-    def both(self, part: str) -> tuple[int, int] | None:
-        """The joint of a part in the character, where it follows, and in the motion."""
-        mine, theirs = self.bodies
-        one = mine.one(part) if mine else None
-        other = theirs.one(part) if theirs else None
-        return None if one is None or other is None or one not in self.following.bones else (one, other)
-
-    def sides(self, part: str) -> tuple[tuple[int, int], tuple[int, int]] | None:
-        """(left, right) of a part in the character and in the motion."""
-        left, right = self.both(f"left_{part}"), self.both(f"right_{part}")
-        return None if left is None or right is None else ((left[0], right[0]), (left[1], right[1]))
-
-
-def _driven(stage: _Stage, root_scale: float | None, ground: bool, lead: int) -> Driven:
+def _driven(stage: Stage, root_scale: float | None, ground: bool, lead: int) -> Driven:
     pairs = Pairs(stage.character.skeleton, stage.motion.skeleton, stage.following)
     sided = [both for part in ("up_leg", "arm") if (both := stage.sides(part)) is not None]
     facing = facing_turn(stage.places, stage.rest.places, sided)
     laid = lay_on(pairs, stage.places, stage.rest.places, facing)
-    scale, scaled_by = _scale(stage, pairs, root_scale)
+    scale, scaled_by = scale_of(stage, pairs, root_scale)
     upright = np.array(UP_TURNS[stage.scene.up])
     ways = rotated(upright, stage.motion.positions(dtype=np.float64)) * scale
     if not np.isfinite(ways).all():
         frame = int(np.flatnonzero(~np.isfinite(ways).all(axis=(1, 2)))[0])
         raise GmrError(
-            f"{stage.motion.name or 'the motion'} has poses that are not known, first in frame {frame}; fill them, "
-            f"or cut them off: motion[:{frame}]"
+            f"{stage.motion.name or 'the motion'} has poses that are not known, first in frame {frame}; "
+            f"fill them, or cut them off: motion[:{frame}]"
         )
     changes = _changes(stage)
     turns, anchor = _turns(stage, pairs, laid, changes, ways)
-    puppet = strung(stage.character, turns, anchor, _place(stage, turns, anchor, ways))
-    legs = _legs(stage, laid, changes, ways, scale)
+    placed = {anchor: _place(stage, turns, anchor, ways)}
+    if stage.following.is_same:
+        placed |= {joint: ways[:, stage.following.bones[joint].start] for joint in pairs.all_above(anchor)}
+    puppet = strung(stage.character, turns, anchor, placed)
+    legs = driven_legs(stage, laid, changes, ways, scale)
     before = measured_feet(puppet, legs) if legs else ()
     raised, sunk = 0.0, np.zeros(1)
     after = before
     if ground and legs:
-        puppet, raised, sunk = stood(puppet, legs, anchor, stage.motion.frame_time)
+        puppet, raised, sunk = stood(puppet, legs, anchor, placed, stage.motion.frame_time)
         after = measured_feet(puppet, legs)
     names, theirs = stage.character.joint_names, stage.motion.skeleton
     used = {bone.name for bone in stage.following.bones.values()}
@@ -191,7 +156,9 @@ def _driven(stage: _Stage, root_scale: float | None, ground: bool, lead: int) ->
         follows={names[joint]: bone.name for joint, bone in stage.following.bones.items()},
         matched_by=stage.following.how,
         unmatched_character=tuple(name for j, name in enumerate(names) if j not in stage.following.bones),
-        unmatched_motion=tuple(n for n, end in zip(theirs.names, theirs.ends, strict=True) if not end and n not in used),
+        unmatched_motion=tuple(
+            n for n, end in zip(theirs.names, theirs.ends, strict=True) if not end and n not in used
+        ),
         scale=None if unit.metres is None else scale / unit.metres,
         scaled_by=scaled_by,
         unit="unit not known" if unit.metres is None else f"a unit is {unit.metres:.4g} m{unit.note}",
@@ -208,14 +175,14 @@ def _driven(stage: _Stage, root_scale: float | None, ground: bool, lead: int) ->
     return Driven(pose_matrices(puppet), stage.motion.frame_time, report)
 
 
-def _changes(stage: _Stage) -> Floats:
+def _changes(stage: Stage) -> Floats:
     """(F, K, 4) how the motion's bones have turned since its rest, both upright: ``U G G_0^-1 D^-1``."""
     since = multiply(stage.motion.bone_rotations(dtype=np.float64), conjugate(stage.rest.rotations))
     upright = np.array(UP_TURNS[stage.scene.up])
     return multiply(upright, multiply(since, conjugate(stage.rest.upright)))
 
 
-def _turns(stage: _Stage, pairs: Pairs, laid: Laid, changes: Floats, ways: Floats) -> tuple[Floats, int]:
+def _turns(stage: Stage, pairs: Pairs, laid: Laid, changes: Floats, ways: Floats) -> tuple[Floats, int]:
     """(F, J, 4) the turns of all joints of the character from its rest, and the joint that has a place."""
     bones, places = stage.following.bones, stage.places
     parents = stage.character.joint_parents
@@ -239,7 +206,7 @@ def _turns(stage: _Stage, pairs: Pairs, laid: Laid, changes: Floats, ways: Float
     return turns, anchor
 
 
-def _place(stage: _Stage, turns: Floats, anchor: int, ways: Floats) -> Floats:
+def _place(stage: Stage, turns: Floats, anchor: int, ways: Floats) -> Floats:
     """(F, 3) of the anchor: the middle of the hip joints goes where the motion's goes, for that is what legs
     hang on, wherever a skeleton has its root."""
     sided = stage.sides("up_leg")
@@ -248,66 +215,3 @@ def _place(stage: _Stage, turns: Floats, anchor: int, ways: Floats) -> Floats:
     mine, theirs = sided
     middle = stage.places[list(mine)].mean(axis=0) - stage.places[anchor]
     return np.asarray(ways[:, list(theirs)].mean(axis=1) - rotated(turns[:, anchor], middle), np.float64)
-
-
-def _scale(stage: _Stage, pairs: Pairs, root_scale: float | None) -> tuple[float, str]:
-    """Metres of the character for a unit of the motion, and what told it."""
-    if root_scale is not None:
-        if not (np.isfinite(root_scale) and root_scale > 0):
-            raise GmrError(f"root_scale={root_scale}: give more than 0")
-        return root_scale / stage.scene.unit.per_metre("root_scale="), "as stated"
-    mine = theirs = 0.0
-    for side in ("left", "right"):
-        top, end = stage.both(f"{side}_up_leg"), stage.both(f"{side}_foot")
-        if top and end:
-            mine += _length(stage.character.skeleton, stage.places, top[0], end[0])
-            theirs += _length(stage.motion.skeleton, stage.rest.places, top[1], end[1])
-    if mine > 0 and theirs > 0:
-        return mine / theirs, "by the legs"
-    bones = stage.following.bones
-    for joint, above in pairs.above.items():
-        if above >= 0:
-            mine += float(np.linalg.norm(stage.places[joint] - stage.places[above]))
-            theirs += float(np.linalg.norm(stage.rest.places[bones[joint].start] - stage.rest.places[bones[above].start]))
-    if mine > 0 and theirs > 0:
-        return mine / theirs, "by all bones that follow"
-    return 1 / stage.scene.unit.per_metre("a character of which one joint follows"), "none, for one joint follows"
-
-
-def _length(skeleton: Skeleton, places: Floats, top: int, end: int) -> float:
-    return float(np.linalg.norm(np.diff(places[path(skeleton, top, end)], axis=0), axis=1).sum())
-
-
-def _legs(stage: _Stage, laid: Laid, changes: Floats, ways: Floats, scale: float) -> list[Leg]:
-    """The legs that can be set on the ground."""
-    found = []
-    for side in ("left", "right"):
-        hip, knee, ankle = (stage.both(f"{side}_{part}") for part in ("up_leg", "leg", "foot"))
-        if hip is None or knee is None or ankle is None or path(stage.character.skeleton, hip[0], ankle[0])[0] != hip[0]:
-            continue
-        toe = stage.both(f"{side}_toe")
-        ball = ankle[1] if toe is None else toe[1]
-        resting = contacts(stage.motion, [ball]) if stage.motion.frame_time else ()
-        rest = stage.rest.places * scale
-        steps = Steps(
-            ankle=ways[:, ankle[1]],
-            ball=ways[:, ball],
-            turn=changes[:, stage.following.bones[ankle[0]].carrier],
-            vector=rest[ball] - rest[ankle[1]],
-            contacts=tuple(resting),
-            metre=scale * stage.scene.unit.per_metre("a report of feet"),
-        )
-        vector = None if toe is None else rotated(laid.turns[ankle[0]], stage.places[toe[0]] - stage.places[ankle[0]])
-        hinge = _leftwards(stage)
-        found.append(Leg(side, hip[0], knee[0], ankle[0], toe and toe[0], vector, hinge, steps))
-    return found
-
-
-def _leftwards(stage: _Stage) -> Floats:
-    """(3,) to the left of the character at rest."""
-    sided = stage.sides("up_leg")
-    assert sided is not None
-    (left, right), _ = sided
-    level = (stage.places[left] - stage.places[right]) * np.array([1.0, 0.0, 1.0])
-    return np.asarray(level / np.linalg.norm(level), np.float64)
-

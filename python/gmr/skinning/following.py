@@ -56,11 +56,13 @@ class Following:
         bones: by joint of the character.
         parts: the part of the body that each is, where that is known.
         how: what told it, in words.
+        is_same: whether both are one skeleton, by the names of their joints.
     """
 
     bones: Mapping[int, Bone]
     parts: Mapping[int, str]
     how: str
+    is_same: bool
 
 
 def read_names(names: Names | None) -> dict[str, dict[str, str]]:
@@ -138,12 +140,11 @@ def follow(
     Raises:
         SkeletonError: a stated joint is not there, or nothing follows anything.
     """
-    bone_of = _bones(motion, by_ends)
-    bones: dict[int, Bone] = {}
-    parts: dict[int, str] = {}
+    bone_of, parts = _bones(motion, by_ends), {}
     mine, theirs = bodies
     same = [(j, motion.names.index(name)) for j, name in enumerate(character.names) if name in motion.names]
-    if len(same) >= _ALIKE * len(character.names):
+    is_same = len(same) >= _ALIKE * len(character.names)
+    if is_same:
         how = "by their names, which are the same"
         found = same
     elif mine and theirs:
@@ -165,7 +166,7 @@ def follow(
         how += f"; {len(stated)} as stated"
     if mine:
         parts = {j: part for part, joints in mine.parts.items() for j in joints if j in bones}
-    return Following(dict(sorted(bones.items())), parts, how)
+    return Following(dict(sorted(bones.items())), parts, how, is_same)
 
 
 def _pairs(part: str, mine: Body, theirs: Body) -> list[tuple[int, int]]:
@@ -187,7 +188,9 @@ def _bones(motion: Skeleton, by_ends: bool) -> Callable[[int], Bone | None]:
     """What makes a bone of a joint; None for a joint that turns nothing."""
 
     def named_for_end(joint: int) -> Bone | None:
-        return Bone(int(motion.parents[joint]) if motion.parents[joint] >= 0 else joint, joint, motion.names[joint])
+        return Bone(
+            int(motion.parents[joint]) if motion.parents[joint] >= 0 else joint, joint, motion.names[joint]
+        )
 
     def named_for_start(joint: int) -> Bone | None:
         below = motion.children[joint]
@@ -218,7 +221,9 @@ def names_for_ends(motion: Skeleton, body: Body | None, roles: Mapping[str, int]
     thigh = body.one("left_up_leg")
     assert thigh is not None
     up_leg = roles["left_up_leg"]
-    return thigh != up_leg and path(motion, up_leg, thigh) == [up_leg, thigh] and motion.parents[thigh] == up_leg
+    return (
+        thigh != up_leg and path(motion, up_leg, thigh) == [up_leg, thigh] and motion.parents[thigh] == up_leg
+    )
 
 
 def _nothing(character: Skeleton, motion: Skeleton, bodies: tuple[Body | None, Body | None]) -> str:
@@ -227,10 +232,11 @@ def _nothing(character: Skeleton, motion: Skeleton, bodies: tuple[Body | None, B
     near = [f"'{name}': '{alike}'" for name in character.names if (alike := _nearest(name, motion.names))]
     nearest = f" Nearest in name: {', '.join(near[:_NEAREST])}." if near else ""
     return (
-        f"no joint of the character is matched with one of the motion: neither names nor shape tell the body of "
+        "no joint of the character is matched with one of the motion: neither names nor shape tell the body of "
         f"the {' and of the '.join(which) or 'two'}. The character's joints are "
-        f"{quoted(character.names, _SHOWN)}; the motion's are {quoted(motion.names, _SHOWN)}.{nearest} Say who "
-        "follows whom: names={'character joint': 'motion joint', ...} in Python, --map FILE on the command line"
+        f"{quoted(character.names, _SHOWN)}; the motion's are {quoted(motion.names, _SHOWN)}.{nearest} Say "
+        "who follows whom: names={'character joint': 'motion joint', ...} in Python, --map FILE on the command "
+        "line"
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,22 +31,24 @@ class Puppet:
     places: Floats
 
 
-def strung(character: Character, turns: Floats, anchor: int, place: Floats) -> Puppet:
+def strung(character: Character, turns: Floats, anchor: int, placed: Mapping[int, Floats]) -> Puppet:
     """Places of the joints: each at its rest vector from its parent, turned as the parent is.
 
     Args:
         character: of J joints.
         turns: (F, J, 4) world rotations from rest.
-        anchor: the joint whose place is known; those that it hangs on, and other trees, go along with it.
-        place: (F, 3) metres.
+        anchor: the joint that the others hang on; those that it hangs on itself, and other trees, go along
+            with it unless they have places of their own.
+        placed: (F, 3) metres, the places of the anchor and of others.
     """
+    place = placed[anchor]
     rest = character.rest_pose()[:, :3, 3]
     parents = character.joint_parents
     found = np.empty((*turns.shape[:2], 3))
     for joint in character.skeleton.parents_first:
         parent = int(parents[joint])
-        if joint == anchor:
-            found[:, joint] = place
+        if joint in placed:
+            found[:, joint] = placed[joint]
         elif parent < 0 or _hangs_above(parents, joint, anchor):
             found[:, joint] = place + rotated(turns[:, anchor], rest[joint] - rest[anchor])
         else:

@@ -1,8 +1,8 @@
 """The rest poses of a motion and of a character, and the turns that lay one on the other.
 
-With ``G(t)`` the world rotation of a bone and ``G_0`` that at rest, a joint that follows it is turned from its
-own rest by ``U G(t) G_0^-1 D^-1 A W``: ``D`` and ``U`` turn the world of the motion upright, at rest and while
-it plays, ``W`` turns the character to face the motion's way, and ``A`` lays the character's bone on the
+With ``G(t)`` the world rotation of a bone and ``G_0`` that at rest, a joint that follows it is turned from
+its own rest by ``U G(t) G_0^-1 D^-1 A W``: ``D`` and ``U`` turn the world of the motion upright, at rest and
+while it plays, ``W`` turns the character to face the motion's way, and ``A`` lays the character's bone on the
 motion's. ``A`` is the shortest turn after that of the bone above, so that it adds no twist.
 """
 
@@ -25,7 +25,15 @@ from gmr.skinning.body_parts import Body
 from gmr.skinning.parts import LEG_PARTS
 from gmr.tpose import leading_rest_frames
 
-__all__ = ["MotionRest", "facing_turn", "heading_turn", "motion_rest", "shortest_turn", "with_flat_feet", "zero_places"]
+__all__ = [
+    "MotionRest",
+    "facing_turn",
+    "heading_turn",
+    "motion_rest",
+    "shortest_turn",
+    "with_flat_feet",
+    "zero_places",
+]
 
 Floats = NDArray[np.float64]
 
@@ -48,8 +56,8 @@ class MotionRest:
 
 
 def zero_places(motion: Motion) -> Floats:
-    """(J, 3) places of the joints at home where nothing turns; a joint without an offset that each frame moves
-    is where it is in the middle of them."""
+    """(J, 3) places of the joints at home where nothing turns; a joint without an offset that each frame
+    moves is where it is in the middle of them."""
     pose = motion.pose
     offsets = motion.skeleton.offsets[pose.translated]
     translations = np.where(offsets.any(axis=1, keepdims=True), offsets, np.median(pose.translations, axis=0))
@@ -96,10 +104,9 @@ def motion_rest(motion: Motion, body: Body | None, up: str, frame: int | None) -
         if fault(motion.skeleton, first.places[None], roles) is None:
             return replace(first, said="the T-pose before the first frame")
     raise GmrError(
-        f"{motion.name or 'the motion'} has no rest pose: where nothing is turned, no body stands ({wrong}), so "
-        "it cannot be laid on the character's. Say in which frame it stands upright with straight arms and feet "
-        "flat on the ground, the nearer to a T-pose or to the character's rest the better: rest=0 in Python, "
-        "--rest 0 on the command line"
+        f"{motion.name or 'the motion'} has no rest pose: where nothing is turned, no body stands ({wrong}), "
+        "so it cannot be laid on the character's. Say in which frame it stands upright, the nearer to a T-pose "
+        "or to the character's rest the better: rest=0 in Python, --rest 0 on the command line"
     )
 
 
@@ -115,7 +122,8 @@ def with_flat_feet(
 ) -> MotionRest:
     """The rest pose with each foot as it is where it stands flattest, for few frames have both feet flat.
 
-    That is the frame of its contacts in which its ankle is lowest; the foot of a motion without contacts stays.
+    That is the frame of its contacts in which the ankle is lowest above the ball; a foot without contacts
+    stays as it is.
 
     Args:
         rest: a frame of the motion.
@@ -144,7 +152,9 @@ def _roles(body: Body | None) -> Mapping[str, int] | None:
     return {part: body.parts[part][0] for part in LEG_PARTS}
 
 
-def facing_turn(mine: Floats, theirs: Floats, pairs: Sequence[tuple[tuple[int, int], tuple[int, int]]]) -> Floats:
+def facing_turn(
+    mine: Floats, theirs: Floats, pairs: Sequence[tuple[tuple[int, int], tuple[int, int]]]
+) -> Floats:
     """(4,) turn about +Y after which a character faces the same way as a motion.
 
     Args:
@@ -185,5 +195,3 @@ def shortest_turn(one: Floats, other: Floats) -> Floats:
     length = np.linalg.norm(found, axis=-1, keepdims=True)
     unit: Floats = np.where((sizes > 0) & (length > 0), found / np.where(length > 0, length, 1.0), IDENTITY)
     return unit
-
-

@@ -1,4 +1,4 @@
-"""A driven character's feet on the ground: each where the motion's foot is, its sole on the floor in contacts.
+"""A driven character's feet on the ground: each where the motion's foot is, its sole on it in contacts.
 
 The ankle goes where the motion's goes, in the character's measure, corrected for a foot of another shape, so
 that a ball that rests in the motion rests in the character. Whatever the sole lacks to the floor is added,
@@ -7,8 +7,8 @@ smoothly; hips sink where a leg is too short; thigh and shin reach by :func:`gmr
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from gmr.quaternions import about, multiply, rotated
 from gmr.skinning.puppet import Puppet, strung
 from gmr.skinning.soles import Sole, heights, sole_of
 
-__all__ = ["FootReport", "Leg", "Steps", "measured_feet", "stood"]
+__all__ = ["FootReport", "Leg", "Steps", "measured_feet", "on_ground", "stood"]
 
 Floats = NDArray[np.float64]
 
@@ -31,8 +31,9 @@ _SINKING = 0.2
 """Seconds over which hips come down and rise again."""
 _NEARLY_STRAIGHT = 0.998
 """Share of its length to which a leg may be straightened, unless it was straighter before."""
-_STEP = 0.05
-"""Metres, in the motion, by which one contact must be higher than the others to be on a step."""
+_GROUND = 0.06
+"""Metres, in the motion, above the lowest place of either ball beyond which a contact is none with the
+ground: a step, or the height of the swing of someone who walks in place, where a foot is slow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,13 +101,16 @@ class FootReport:
     lowest_mm: float
 
 
-def stood(puppet: Puppet, legs: Sequence[Leg], anchor: int, frame_time: float) -> tuple[Puppet, float, Floats]:
+def stood(
+    puppet: Puppet, legs: Sequence[Leg], anchor: int, placed: Mapping[int, Floats], frame_time: float
+) -> tuple[Puppet, float, Floats]:
     """The character with its feet on the ground.
 
     Args:
         puppet: driven.
         legs: at least one.
-        anchor: the joint that has a place of its own.
+        anchor: the joint that the others hang on.
+        placed: (F, 3) places of the anchor and of others.
         frame_time: seconds.
 
     Returns:
@@ -118,20 +122,21 @@ def stood(puppet: Puppet, legs: Sequence[Leg], anchor: int, frame_time: float) -
     blend = max(round(_BLEND * fps), 1)
     targets = [_ankle(leg, blend) for leg in legs]
     above = [
-        _heights_at(puppet, leg, sole, target) - floor for leg, sole, target in zip(legs, soles, targets, strict=True)
+        _heights_at(puppet, leg, sole, target) - floor
+        for leg, sole, target in zip(legs, soles, targets, strict=True)
     ]
-    levels = _levels(legs)
-    raised = _raised(legs, above, levels)
-    for leg, target, height, level in zip(legs, targets, above, levels, strict=True):
-        target[:, 1] += raised + _lacking(leg, height + raised, level, blend)
-    place = puppet.places[:, anchor] + raised * _UP
-    lifted = strung(puppet.character, puppet.turns, anchor, place)
+    raised = _raised(legs, above)
+    for leg, target, height in zip(legs, targets, above, strict=True):
+        target[:, 1] += raised + _lacking(leg, height + raised, blend)
+    placed = {joint: place + raised * _UP for joint, place in placed.items()}
+    lifted = strung(puppet.character, puppet.turns, anchor, placed)
     sunk = _sinking(lifted, legs, targets, round(_SINKING * fps))
-    lowered = strung(puppet.character, puppet.turns, anchor, place - sunk[:, None] * _UP)
+    placed[anchor] = placed[anchor] - sunk[:, None] * _UP
+    lowered = strung(puppet.character, puppet.turns, anchor, placed)
     turns = lowered.turns.copy()
     for leg, target in zip(legs, targets, strict=True):
         _bend(lowered, leg, target, turns)
-    return strung(puppet.character, turns, anchor, lowered.places[:, anchor]), raised, sunk
+    return strung(puppet.character, turns, anchor, placed), raised, sunk
 
 
 def floor_of(puppet: Puppet, soles: Sequence[Sole]) -> float:
@@ -140,12 +145,19 @@ def floor_of(puppet: Puppet, soles: Sequence[Sole]) -> float:
     return float(min((rest[sole.joints] + sole.vectors)[:, 1].min() for sole in soles))
 
 
+def on_ground(steps: Steps, lowest: float) -> Steps:
+    """The same with only the contacts that are with the ground; ``lowest``: height of the lowest ball."""
+    highest = lowest + _GROUND * steps.metre
+    held = [one for one in steps.contacts if np.median(steps.ball[one.first : one.end, 1]) <= highest]
+    return replace(steps, contacts=tuple(held))
+
+
 def _ankle(leg: Leg, blend: int) -> Floats:
     """(F, 3) where the ankle is to be.
 
-    A foot of another shape is turned about its ball rather than its ankle: with ``d`` what the motion's vector
-    to the ball has over the character's, the ankle is moved by ``F d`` less what that is while the foot is
-    flat, in contacts. The heading of the flat foot is held in contacts, so that the ball does not slide where it turns.
+    A foot of another shape is turned about its ball rather than its ankle, in contacts: with ``d`` what the
+    motion's vector to the ball has over the character's, the ankle is moved by ``F d`` less what that is while
+    the foot is flat. The heading of that flat foot is held, so that the ball does not slide where it turns.
     """
     steps = leg.steps
     if leg.vector is None:
@@ -158,10 +170,10 @@ def _ankle(leg: Leg, blend: int) -> Floats:
         held[one.first : one.end, 0] = np.median(there) - there
     held = eased(held, [(one.first, one.end) for one in steps.contacts], blend)
     moved = rotated(steps.turn, more) - rotated(about(_UP, heading + held[:, 0]), more)
-    return steps.ankle + _on_ground(leg, blend)[:, None] * moved
+    return steps.ankle + _contact_weights(leg, blend)[:, None] * moved
 
 
-def _on_ground(leg: Leg, blend: int) -> Floats:
+def _contact_weights(leg: Leg, blend: int) -> Floats:
     """(F,) 1 in contacts, 0 away from them."""
     count = len(leg.steps.ball)
     weights = [blend_weights(count, one.first, one.end, blend) for one in leg.steps.contacts]
@@ -174,24 +186,11 @@ def _heights_at(puppet: Puppet, leg: Leg, sole: Sole, ankle: Floats) -> Floats:
     return heights(sole, puppet.turns, places)
 
 
-def _levels(legs: Sequence[Leg]) -> list[Floats]:
-    """(F,) for each leg: how high the ground is in contacts: 0, but where a foot stands on a step."""
-    usual = np.concatenate([leg.steps.ball[one.first : one.end, 1] for leg in legs for one in leg.steps.contacts] or [[0.0]])
-    found = []
-    for leg in legs:
-        level = np.zeros(len(leg.steps.ball))
-        for one in leg.steps.contacts:
-            here = float(np.median(leg.steps.ball[one.first : one.end, 1]) - np.median(usual))
-            level[one.first : one.end] = here if abs(here) > _STEP * leg.steps.metre else 0.0
-        found.append(level)
-    return found
-
-
-def _raised(legs: Sequence[Leg], above: Sequence[Floats], levels: Sequence[Floats]) -> float:
+def _raised(legs: Sequence[Leg], above: Sequence[Floats]) -> float:
     """By how much the whole is raised: what contacts lack in the middle, or else the lowest frame."""
     lacking = [
-        (level - height)[one.first : one.end]
-        for leg, height, level in zip(legs, above, levels, strict=True)
+        -height[one.first : one.end]
+        for leg, height in zip(legs, above, strict=True)
         for one in leg.steps.contacts
     ]
     if lacking:
@@ -199,10 +198,10 @@ def _raised(legs: Sequence[Leg], above: Sequence[Floats], levels: Sequence[Float
     return -float(min(height.min(initial=np.inf) for height in above)) if len(above[0]) else 0.0
 
 
-def _lacking(leg: Leg, height: Floats, level: Floats, blend: int) -> Floats:
+def _lacking(leg: Leg, height: Floats, blend: int) -> Floats:
     """(F,) what the foot is raised by: to the ground in contacts, out of it elsewhere, smoothly between."""
-    weight = _on_ground(leg, blend)
-    return weight * (level - height) + (1 - weight) * np.maximum(-height, 0)
+    weight = _contact_weights(leg, blend)
+    return weight * -height + (1 - weight) * np.maximum(-height, 0)
 
 
 def _sinking(puppet: Puppet, legs: Sequence[Leg], targets: Sequence[Floats], width: int) -> Floats:
@@ -222,7 +221,9 @@ def _longest(puppet: Puppet, leg: Leg) -> Floats:
     """(F,) how far the ankle may be from the hip."""
     hip, knee, ankle = (puppet.places[:, joint] for joint in (leg.hip, leg.knee, leg.ankle))
     straight = np.linalg.norm(knee - hip, axis=1) + np.linalg.norm(ankle - knee, axis=1)
-    return np.asarray(np.maximum(np.linalg.norm(ankle - hip, axis=1), _NEARLY_STRAIGHT * straight), np.float64)
+    return np.asarray(
+        np.maximum(np.linalg.norm(ankle - hip, axis=1), _NEARLY_STRAIGHT * straight), np.float64
+    )
 
 
 def _bend(puppet: Puppet, leg: Leg, target: Floats, turns: Floats) -> None:
@@ -255,12 +256,15 @@ def measured_feet(puppet: Puppet, legs: Sequence[Leg]) -> tuple[FootReport, ...]
     soles = [sole_of(puppet.character, leg.ankle) for leg in legs]
     floor = floor_of(puppet, soles)
     found = []
-    for leg, sole, level in zip(legs, soles, _levels(legs), strict=True):
+    for leg, sole in zip(legs, soles, strict=True):
         height = heights(sole, puppet.turns, puppet.places) - floor
         ball = puppet.places[:, leg.ankle if leg.toe is None else leg.toe]
         contacts = leg.steps.contacts
-        off = [np.abs(height - level)[one.first : one.end].max() for one in contacts]
-        ways = [(slide(leg.steps.ball[one.first : one.end], _UP), slide(ball[one.first : one.end], _UP)) for one in contacts]
+        off = [np.abs(height)[one.first : one.end].max() for one in contacts]
+        ways = [
+            (slide(leg.steps.ball[one.first : one.end], _UP), slide(ball[one.first : one.end], _UP))
+            for one in contacts
+        ]
         theirs, mine = np.mean(ways, axis=0) if ways else (0.0, 0.0)
         found.append(
             FootReport(
