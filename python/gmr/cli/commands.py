@@ -13,7 +13,7 @@ import click
 
 __all__ = ["gmr"]
 
-COMMANDS: Final = ("evaluate", "info", "convert", "roots", "bench", "demo")
+COMMANDS: Final = ("evaluate", "info", "convert", "roots", "skin", "bench", "demo")
 
 
 class Commands(click.Group):
@@ -55,6 +55,7 @@ def gmr() -> None:
     gmr info walk.bvh             what is in a file, and what is odd about it
     gmr convert takes/ out/ --fps 60 --mirror
     gmr roots walk.bvh --set Hips,LeftHand,RightHand
+    gmr skin figure.glb walk.bvh walking.glb       a motion drives a character
     gmr evaluate takes/           what a set of locomotion clips can do, as a report
     gmr COMMAND --help            more examples
     """

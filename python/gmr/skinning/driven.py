@@ -96,8 +96,8 @@ class DrivingReport:
             lines.append(
                 f"{after.side} foot: {after.contacts} contacts; sole off the ground in them by "
                 f"{after.height_mm:.1f} mm at most (before: {before.height_mm:.1f}), lowest "
-                f"{after.lowest_mm:.1f} mm ({before.lowest_mm:.1f}); slides {after.slide_mm:.1f} mm a contact "
-                f"({before.slide_mm:.1f}; the motion's own: {after.source_slide_mm:.1f})"
+                f"{after.lowest_mm:.1f} mm ({before.lowest_mm:.1f}); slides {after.slide_mm:.1f} mm a "
+                f"contact ({before.slide_mm:.1f}; the motion's own: {after.source_slide_mm:.1f})"
             )
         return lines
 

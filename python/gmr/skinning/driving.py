@@ -60,9 +60,9 @@ def drive(
         motion: F frames, in any unit and with any axis up; frames that a converter put before the recording
             are left out.
         character: of J joints.
-        names: who follows whom, where names and shape do not tell: character's joint -> motion's joint ("" for none);
-            or tables ``follows`` (the same), ``character`` and ``motion`` (part of the body -> joint); or a
-            TOML or JSON file of these.
+        names: who follows whom, where names and shape do not tell: character's joint -> motion's joint
+            ("" for none); or tables ``follows`` (the same), ``character`` and ``motion`` (part of the body ->
+            joint); or a TOML or JSON file of these.
         fps: frames a second of the poses; the motion's where left out.
         root_scale: metres that the character goes for a metre of the motion; the ratio of the legs' lengths
             where left out.

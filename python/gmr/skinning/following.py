@@ -140,10 +140,10 @@ def follow(
     Raises:
         SkeletonError: a stated joint is not there, or nothing follows anything.
     """
-    bone_of, parts = _bones(motion, by_ends), {}
     mine, theirs = bodies
     same = [(j, motion.names.index(name)) for j, name in enumerate(character.names) if name in motion.names]
     is_same = len(same) >= _ALIKE * len(character.names)
+    bone_of = _bones(motion, by_ends and not is_same)
     if is_same:
         how = "by their names, which are the same"
         found = same
@@ -164,6 +164,7 @@ def follow(
         raise SkeletonError(_nothing(character, motion, bodies))
     if stated and found:
         how += f"; {len(stated)} as stated"
+    parts: dict[int, str] = {}
     if mine:
         parts = {j: part for part, joints in mine.parts.items() for j in joints if j in bones}
     return Following(dict(sorted(bones.items())), parts, how, is_same)
@@ -194,6 +195,8 @@ def _bones(motion: Skeleton, by_ends: bool) -> Callable[[int], Bone | None]:
 
     def named_for_start(joint: int) -> Bone | None:
         below = motion.children[joint]
+        if motion.slots[joint] >= 0 and motion.parents[joint] < 0:
+            return Bone(joint, joint, motion.names[joint])
         return Bone(joint, _widest(motion, below), motion.names[joint]) if below else None
 
     return named_for_end if by_ends else named_for_start
@@ -232,11 +235,11 @@ def _nothing(character: Skeleton, motion: Skeleton, bodies: tuple[Body | None, B
     near = [f"'{name}': '{alike}'" for name in character.names if (alike := _nearest(name, motion.names))]
     nearest = f" Nearest in name: {', '.join(near[:_NEAREST])}." if near else ""
     return (
-        "no joint of the character is matched with one of the motion: neither names nor shape tell the body of "
-        f"the {' and of the '.join(which) or 'two'}. The character's joints are "
+        "no joint of the character is matched with one of the motion: neither names nor shape tell the body "
+        f"of the {' and of the '.join(which) or 'two'}. The character's joints are "
         f"{quoted(character.names, _SHOWN)}; the motion's are {quoted(motion.names, _SHOWN)}.{nearest} Say "
-        "who follows whom: names={'character joint': 'motion joint', ...} in Python, --map FILE on the command "
-        "line"
+        "who follows whom: names={'character joint': 'motion joint', ...} in Python, --map FILE on the "
+        "command line"
     )
 
 

@@ -105,8 +105,8 @@ def motion_rest(motion: Motion, body: Body | None, up: str, frame: int | None) -
             return replace(first, said="the T-pose before the first frame")
     raise GmrError(
         f"{motion.name or 'the motion'} has no rest pose: where nothing is turned, no body stands ({wrong}), "
-        "so it cannot be laid on the character's. Say in which frame it stands upright, the nearer to a T-pose "
-        "or to the character's rest the better: rest=0 in Python, --rest 0 on the command line"
+        "so it cannot be laid on the character's. Say in which frame it stands upright, the nearer to a "
+        "T-pose or to the character's rest the better: rest=0 in Python, --rest 0 on the command line"
     )
 
 

@@ -36,8 +36,8 @@ class Sole:
 
 
 def sole_of(character: Character, ankle: int) -> Sole:
-    """The outermost points of what the joints from the ankle down carry; those joints themselves, laid down to
-    the lowest, where they carry nothing."""
+    """The outermost points of what the joints from the ankle down carry; those joints themselves, laid down
+    to the lowest, where they carry nothing."""
     rest = character.rest_pose()[:, :3, 3]
     parents = character.joint_parents
     foot = [j for j in character.skeleton.parents_first if j == ankle or _is_below(parents, j, ankle)]

@@ -156,8 +156,9 @@ def _ankle(leg: Leg, blend: int) -> Floats:
     """(F, 3) where the ankle is to be.
 
     A foot of another shape is turned about its ball rather than its ankle, in contacts: with ``d`` what the
-    motion's vector to the ball has over the character's, the ankle is moved by ``F d`` less what that is while
-    the foot is flat. The heading of that flat foot is held, so that the ball does not slide where it turns.
+    motion's vector to the ball has over the character's, the ankle is moved by ``F d`` less what that is
+    while the foot is flat. The heading of that flat foot is held, so that the ball does not slide where it
+    turns.
     """
     steps = leg.steps
     if leg.vector is None:

@@ -1,0 +1,116 @@
+"""``gmr skin``: a motion drives a character, which is written as a moving GLB."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from gmr.cli.common import Rate, naming, read_noting, reading_options, say
+from gmr.errors import FormatWarning
+
+if TYPE_CHECKING:
+    from gmr.motion import Motion
+    from gmr.skinning.character import Character
+
+__all__ = ["skin"]
+
+
+@click.command(short_help="Let a motion drive a character; write it as GLB.")
+@click.argument("character", metavar="CHARACTER")
+@click.argument("motion", metavar="MOTION")
+@click.argument("out", metavar="OUT.glb")
+@click.option(
+    "--map",
+    "names",
+    metavar="FILE",
+    type=click.Path(),
+    help="Who follows whom, TOML or JSON: docs/driving.md.",
+)
+@click.option("--fps", type=Rate(), help="Frames a second of OUT; the motion's otherwise.")
+@click.option("--rest", type=int, metavar="FRAME", help="The frame in which MOTION stands upright.")
+@click.option(
+    "--scale",
+    type=click.FloatRange(0, min_open=True),
+    help="Metres of way for each of MOTION's; legs tell it otherwise.",
+)
+@click.option("--no-ground", is_flag=True, help="Leave the feet where the turns of the bones put them.")
+@click.option("--bind", is_flag=True, help="Bind a CHARACTER without a skin to MOTION's skeleton.")
+@click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
+@reading_options
+def skin(
+    character: str,
+    motion: str,
+    out: str,
+    names: str | None,
+    fps: float | None,
+    rest: int | None,
+    scale: float | None,
+    no_ground: bool,
+    bind: bool,
+    as_json: bool,
+    positions: str,
+    asf: str | None,
+    amc_fps: float | None,
+    animation: str | None,
+    strict: bool,
+) -> int:
+    """Let a motion drive a character, and write the moving character.
+
+    CHARACTER is a .glb or .gltf with a skin, or, with --bind, any mesh that stands in metres where MOTION's
+    skeleton stands at rest; MOTION is a .bvh, an .amc, a .glb or any other motion. Their joints may have other
+    names, their bones other lengths, and they may rest in other poses: what follows what is found by names, or
+    by the shape of the body, and said. Vertices are bent by whoever shows OUT.glb.
+
+    \b
+    Examples:
+      gmr skin figure.glb walk.bvh walking.glb
+      gmr skin figure.glb 07_01.amc walking.glb --fps 30 --json
+      gmr skin figure.glb take.bvh moving.glb --map names.toml
+      gmr skin figure.glb take.bvh moving.glb --rest 0    where the file has no rest pose of its own
+      gmr skin body.obj walk.bvh walking.glb --bind
+    """
+    if Path(out).suffix.lower() != ".glb":
+        raise click.UsageError(f"'{out}': a moving character is written as .glb; name OUT so")
+    from gmr.formats import write_character
+    from gmr.skinning.driving import drive
+
+    played, said = read_noting(
+        motion, positions=positions, asf=asf, fps=amc_fps, animation=animation, strict=strict
+    )
+    if bind:
+        with naming(played):
+            played = _in_metres(played).to_post_rotation()
+    shown, more = _character(character, played if bind else None, strict)
+    for warning in [*said, *more]:
+        say(warning)
+    with naming(played):
+        driven = drive(played, shown, names=names, fps=fps, root_scale=scale, ground=not no_ground, rest=rest)
+    write_character(shown, out, driven.poses, driven.frame_time)
+    frames = len(driven.poses)
+    if as_json:
+        written = {"character": character, "motion": motion, "out": out, "frames": frames}
+        click.echo(json.dumps({**written, **driven.report.as_dict()}, indent=2, allow_nan=False))
+    else:
+        click.echo(f"{out}: {frames} frames, {frames * driven.frame_time:.2f} s\n{driven.report}")
+    return 0
+
+
+def _character(path: str, motion: Motion | None, strict: bool) -> tuple[Character, list[str]]:
+    """The character, bound to a motion's skeleton where one is given, and oddities of its file."""
+    from gmr.formats import read_character
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", FormatWarning)
+        character = read_character(path, motion, strict=strict)
+    return character, [str(one.message) for one in caught if issubclass(one.category, FormatWarning)]
+
+
+def _in_metres(motion: Motion) -> Motion:
+    from gmr.editing.scene import scene_of
+
+    metres = 1 / scene_of(motion).unit.per_metre("--bind")
+    return motion.with_unit(metres).to_unit("m")
