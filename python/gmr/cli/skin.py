@@ -61,9 +61,9 @@ def skin(
     """Let a motion drive a character, and write the moving character.
 
     CHARACTER is a .glb or .gltf with a skin, or, with --bind, any mesh that stands in metres where MOTION's
-    skeleton stands at rest; MOTION is a .bvh, an .amc, a .glb or any other motion. Their joints may have other
-    names, their bones other lengths, and they may rest in other poses: what follows what is found by names, or
-    by the shape of the body, and said. Vertices are bent by whoever shows OUT.glb.
+    skeleton stands at rest; MOTION is a .bvh, an .amc, a .glb or any other motion. Their joints may have
+    other names, their bones other lengths, and they may rest in other poses: what follows what is found by
+    names, or by the shape of the body, and said. Vertices are bent by whoever shows OUT.glb.
 
     \b
     Examples:

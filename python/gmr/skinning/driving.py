@@ -13,10 +13,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.body.joints import find_joints
 from gmr.body.measures import UP_TURNS
 from gmr.editing.roles import known_roles
 from gmr.editing.scene import Scene, scene_of
-from gmr.errors import GmrError
+from gmr.errors import DatasetError, GmrError
 from gmr.forest import home
 from gmr.motion import Motion
 from gmr.quaternions import conjugate, multiply, rotated
@@ -84,8 +85,7 @@ def drive(
     if not at_home.frame_count:
         raise GmrError(f"{motion.name or 'the motion'} has no frames, so it cannot drive a character")
     scene = scene_of(at_home)
-    mine = find_body(character.skeleton, character.rest_pose()[:, :3, 3])
-    mine = with_stated(mine, character.skeleton, tables["character"])
+    mine = with_stated(_body_of_character(character), character.skeleton, tables["character"])
     theirs, by_ends = _body_of(at_home, scene, tables["motion"])
     following = follow(
         character.skeleton, at_home.skeleton, (mine, theirs), tables["follows"], by_ends=by_ends
@@ -99,6 +99,19 @@ def drive(
     if "frame" in resting.said:
         stage = replace(stage, rest=with_flat_feet(resting, recorded, scene.up, feet_of_motion(stage)))
     return _driven(stage, root_scale, ground, lead)
+
+
+def _body_of_character(character: Character) -> Body | None:
+    """The body of a character, by the joints in which bones begin."""
+    skeleton, rest = character.skeleton, np.asarray(character.rest_pose()[:, :3, 3], np.float64)
+    body = find_body(skeleton, rest)
+    if body is None or body.found_by == "shape":
+        return body
+    try:
+        roles = find_joints(skeleton, rest[None]).roles
+    except DatasetError:
+        return body
+    return _begins(body, skeleton) if names_for_ends(skeleton, body, roles) else body
 
 
 def _body_of(motion: Motion, scene: Scene, stated: dict[str, str]) -> tuple[Body | None, bool]:

@@ -153,20 +153,26 @@ def follow(
     else:
         how, found = "as stated", []
     left_out = {character.index(name) for name in stated}
-    bones = {j: bone for j, k in found if j not in left_out and (bone := bone_of(k)) is not None}
-    for name, other in stated.items():
-        if other:
-            bone = bone_of(motion.index(other))
+    bones: dict[int, Bone] = {}
+    for joint, other in found:
+        bone = bone_of(other)
+        if joint not in left_out and bone is not None:
+            bones.setdefault(joint, bone)
+    for name, followed in stated.items():
+        if followed:
+            bone = bone_of(motion.index(followed))
             if bone is None:
-                raise SkeletonError(f"'{other}' has no bone that turns, so '{name}' cannot follow it")
+                raise SkeletonError(f"'{followed}' has no bone that turns, so '{name}' cannot follow it")
             bones[character.index(name)] = bone
     if not bones:
         raise SkeletonError(_nothing(character, motion, bodies))
     if stated and found:
         how += f"; {len(stated)} as stated"
     parts: dict[int, str] = {}
-    if mine:
-        parts = {j: part for part, joints in mine.parts.items() for j in joints if j in bones}
+    for part, joints in mine.parts.items() if mine else ():
+        for joint in joints:
+            if joint in bones:
+                parts.setdefault(joint, part)
     return Following(dict(sorted(bones.items())), parts, how, is_same)
 
 
