@@ -35,7 +35,7 @@ class DrivingReport:
         facing_deg: by how much the character was turned about the vertical for that.
         rest_turns_deg: character's joint -> how far its bone was turned for that.
         left_out: frames that a converter put before the recording.
-        raised_mm: by how much the whole was raised to stand on the ground.
+        raised_mm: by how much the whole was raised to stand on the ground, in the middle of the frames.
         sunk_mm: by how much the hips sank at most for the legs to reach.
         feet_before: before anything was done for the feet.
         feet: after it.

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -34,8 +32,7 @@ def driven_legs(stage: Stage, laid: Laid, changes: Floats, ways: Floats, scale: 
         vector = None if toe is None else rotated(laid.turns[ankle[0]], rest[toe[0]] - rest[ankle[0]])
         joints = hip[0], knee[0], ankle[0], None if toe is None else toe[0]
         found.append(Leg(side, *joints, vector, _leftwards(stage), steps))
-    lowest = min((float(leg.steps.ball[:, 1].min()) for leg in found), default=0.0)
-    return [replace(leg, steps=on_ground(leg.steps, lowest)) for leg in found]
+    return on_ground(found, stage.motion.frame_time) if found else []
 
 
 def _steps(

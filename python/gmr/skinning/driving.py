@@ -82,23 +82,33 @@ def drive(
     """
     tables = read_names(names)
     at_home = home(motion)
-    if not at_home.frame_count:
-        raise GmrError(f"{motion.name or 'the motion'} has no frames, so it cannot drive a character")
+    _check(at_home)
     scene = scene_of(at_home)
     mine = with_stated(_body_of_character(character), character.skeleton, tables["character"])
     theirs, by_ends = _body_of(at_home, scene, tables["motion"])
     following = follow(
         character.skeleton, at_home.skeleton, (mine, theirs), tables["follows"], by_ends=by_ends
     )
-    begins = _begins(theirs, at_home.skeleton) if theirs and by_ends else theirs
-    resting = motion_rest(at_home, begins, scene.up, rest)
+    resting = motion_rest(at_home, following.begins, scene.up, rest)
     lead = leading_rest_frames(at_home)
     recorded = at_home[lead:]
     moving = recorded if fps is None else recorded.resample(fps)
-    stage = Stage(moving, scene, character, following, (mine, begins), resting)
+    stage = Stage(moving, scene, character, following, resting)
     if "frame" in resting.said:
         stage = replace(stage, rest=with_flat_feet(resting, recorded, scene.up, feet_of_motion(stage)))
     return _driven(stage, root_scale, ground, lead)
+
+
+def _check(motion: Motion) -> None:
+    if not motion.frame_count:
+        raise GmrError(f"{motion.name or 'the motion'} has no frames, so it cannot drive a character")
+    known = [np.isfinite(array).all(axis=(1, 2)) for array in (motion.rotations, motion.translations)]
+    if not np.all(known):
+        frame = int(np.flatnonzero(~np.all(known, axis=0))[0])
+        raise GmrError(
+            f"{motion.name or 'the motion'} has poses that are not known, first in frame {frame}; fill them, "
+            f"or cut them off: motion[:{frame}]"
+        )
 
 
 def _body_of_character(character: Character) -> Body | None:
@@ -143,12 +153,6 @@ def _driven(stage: Stage, root_scale: float | None, ground: bool, lead: int) -> 
     scale, scaled_by = scale_of(stage, pairs, root_scale)
     upright = np.array(UP_TURNS[stage.scene.up])
     ways = rotated(upright, stage.motion.positions(dtype=np.float64)) * scale
-    if not np.isfinite(ways).all():
-        frame = int(np.flatnonzero(~np.isfinite(ways).all(axis=(1, 2)))[0])
-        raise GmrError(
-            f"{stage.motion.name or 'the motion'} has poses that are not known, first in frame {frame}; "
-            f"fill them, or cut them off: motion[:{frame}]"
-        )
     changes = _changes(stage)
     turns, anchor = _turns(stage, pairs, laid, changes, ways)
     placed = {anchor: _place(stage, turns, anchor, ways)}
@@ -157,7 +161,7 @@ def _driven(stage: Stage, root_scale: float | None, ground: bool, lead: int) -> 
     puppet = strung(stage.character, turns, anchor, placed)
     legs = driven_legs(stage, laid, changes, ways, scale)
     before = measured_feet(puppet, legs) if legs else ()
-    raised, sunk = 0.0, np.zeros(1)
+    raised = sunk = np.zeros(1)
     after = before
     if ground and legs:
         puppet, raised, sunk = stood(puppet, legs, anchor, placed, stage.motion.frame_time)
@@ -180,7 +184,7 @@ def _driven(stage: Stage, root_scale: float | None, ground: bool, lead: int) -> 
         facing_deg=float(np.degrees(2 * np.arctan2(facing[1], facing[3]))),
         rest_turns_deg={names[joint]: angle for joint, angle in laid.angles_deg.items()},
         left_out=lead,
-        raised_mm=1000 * raised,
+        raised_mm=1000 * float(np.median(raised)),
         sunk_mm=1000 * float(sunk.max(initial=0.0)),
         feet_before=before,
         feet=after,

@@ -64,6 +64,14 @@ class Following:
     how: str
     is_same: bool
 
+    @property
+    def begins(self) -> dict[str, int]:
+        """By part the joint of the motion in which the bone begins, the first of a chain."""
+        found: dict[str, int] = {}
+        for joint, part in self.parts.items():
+            found.setdefault(part, self.bones[joint].start)
+        return found
+
 
 def read_names(names: Names | None) -> dict[str, dict[str, str]]:
     """The three tables of a map, empty where it has none.
@@ -168,12 +176,26 @@ def follow(
         raise SkeletonError(_nothing(character, motion, bodies))
     if stated and found:
         how += f"; {len(stated)} as stated"
-    parts: dict[int, str] = {}
+    return Following(dict(sorted(bones.items())), _parts(bones, bodies, bone_of), how, is_same)
+
+
+def _parts(
+    bones: Mapping[int, Bone], bodies: tuple[Body | None, Body | None], bone_of: Callable[[int], Bone | None]
+) -> dict[int, str]:
+    """The part that each joint of the character is; where its body is not known, the part that it follows."""
+    mine, theirs = bodies
+    found: dict[int, str] = {}
     for part, joints in mine.parts.items() if mine else ():
         for joint in joints:
             if joint in bones:
-                parts.setdefault(joint, part)
-    return Following(dict(sorted(bones.items())), parts, how, is_same)
+                found.setdefault(joint, part)
+    if mine is None and theirs is not None:
+        followers = {bone: joint for joint, bone in bones.items()}
+        for part, joints in theirs.parts.items():
+            for bone in map(bone_of, joints):
+                if bone in followers:
+                    found.setdefault(followers[bone], part)
+    return found
 
 
 def _pairs(part: str, mine: Body, theirs: Body) -> list[tuple[int, int]]:

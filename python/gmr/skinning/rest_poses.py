@@ -21,7 +21,6 @@ from gmr.errors import GmrError
 from gmr.frames import Pose
 from gmr.motion import Motion
 from gmr.quaternions import IDENTITY, about, rotated
-from gmr.skinning.body_parts import Body
 from gmr.skinning.parts import LEG_PARTS
 from gmr.tpose import leading_rest_frames
 
@@ -67,7 +66,7 @@ def zero_places(motion: Motion) -> Floats:
     return np.asarray(found - found[motion.skeleton.roots[0]], np.float64)
 
 
-def motion_rest(motion: Motion, body: Body | None, up: str, frame: int | None) -> MotionRest:
+def motion_rest(motion: Motion, begins: Mapping[str, int], up: str, frame: int | None) -> MotionRest:
     """The rest pose of a motion at home.
 
     It is the frame that is asked for, else the pose in which nothing is turned, else the T-pose that a
@@ -75,7 +74,7 @@ def motion_rest(motion: Motion, body: Body | None, up: str, frame: int | None) -
 
     Args:
         motion: at home.
-        body: its parts, those of bones' starts.
+        begins: its joints by part of the body, as far as they are known.
         up: its axis that points up.
         frame: in which it rests; None: find it.
 
@@ -88,14 +87,14 @@ def motion_rest(motion: Motion, body: Body | None, up: str, frame: int | None) -
         chosen = _of_frame(motion, frame % motion.frame_count, up)
         return replace(chosen, said=f"frame {frame % motion.frame_count}, as stated")
     zero = zero_places(motion)
-    roles = _roles(body)
-    if roles is None:
+    roles = {part: begins[part] for part in LEG_PARTS if part in begins}
+    if len(roles) < len(LEG_PARTS):
         still = np.tile(IDENTITY, (motion.skeleton.joint_count, 1))
         turn = np.array(UP_TURNS[up])
         return MotionRest(rotated(turn, zero), still, turn, "the pose in which nothing is turned")
     stands = np.array(UP_TURNS[up_axis(zero[None], roles)])
     upright = rotated(stands, zero)
-    wrong = fault(motion.skeleton, upright[None], roles)
+    wrong = fault(motion.skeleton, upright[None], roles) or _upside_down(motion, upright, begins)
     if wrong is None:
         still = np.tile(IDENTITY, (motion.skeleton.joint_count, 1))
         return MotionRest(upright, still, stands, "the pose in which nothing is turned")
@@ -115,6 +114,15 @@ def _of_frame(motion: Motion, frame: int, up: str) -> MotionRest:
     turn = np.array(UP_TURNS[up])
     places = rotated(turn, one.positions(dtype=np.float64)[0])
     return MotionRest(places, one.bone_rotations(dtype=np.float64)[0], turn, f"frame {frame}")
+
+
+def _upside_down(motion: Motion, places: Floats, begins: Mapping[str, int]) -> str | None:
+    """What should be above the hips and is not, as the rest of a sentence."""
+    for part in ("head", "neck", "left_arm", "right_arm"):
+        if part in begins and places[begins[part], 1] <= places[begins["hips"], 1]:
+            names = motion.skeleton.names
+            return f"'{names[begins[part]]}' ({part}) does not lie above '{names[begins['hips']]}' (hips)"
+    return None
 
 
 def with_flat_feet(
@@ -144,12 +152,6 @@ def with_flat_feet(
             rotations[list(carriers)] = there[list(carriers)]
             places[ball] = places[ankle] + way[flattest, 1] - way[flattest, 0]
     return replace(rest, places=places, rotations=rotations)
-
-
-def _roles(body: Body | None) -> Mapping[str, int] | None:
-    if body is None or any(part not in body.parts for part in LEG_PARTS):
-        return None
-    return {part: body.parts[part][0] for part in LEG_PARTS}
 
 
 def facing_turn(

@@ -22,17 +22,19 @@ _DIRECTIONS = 16
 
 @dataclass(frozen=True, eq=False)
 class Sole:
-    """Points of a foot.
+    """Points of a foot, carried as linear blending carries them.
 
     Args:
-        joints: (N,) the joint that carries each.
-        vectors: (N, 3) metres from that joint at rest.
-        by_mesh: whether they are of the mesh; else below the joints, which then are as high as at rest.
+        joints: (N, K) the joints that carry each.
+        weights: (N, K)
+        vectors: (N, K, 3) metres from those joints at rest.
+        rest: (N, 3) places at rest.
     """
 
     joints: NDArray[np.int32]
+    weights: Floats
     vectors: Floats
-    by_mesh: bool
+    rest: Floats
 
 
 def sole_of(character: Character, ankle: int) -> Sole:
@@ -43,12 +45,13 @@ def sole_of(character: Character, ankle: int) -> Sole:
     foot = [j for j in character.skeleton.parents_first if j == ankle or _is_below(parents, j, ankle)]
     found = _carried(character, foot) if character.skinned_parts else None
     if found is None:
-        lowest = rest[foot, 1].min()
-        points = rest[foot] * np.array([1.0, 0, 1]) + np.array([0, lowest, 0])
-        return Sole(np.array(foot, np.int32), points - rest[foot], by_mesh=False)
-    joints, points = found
-    outer = _outermost(points)
-    return Sole(joints[outer], points[outer] - rest[joints[outer]], by_mesh=True)
+        points = rest[foot] * np.array([1.0, 0, 1]) + np.array([0, rest[foot, 1].min(), 0])
+        joints, weights = np.array(foot, np.int32)[:, None], np.ones((len(foot), 1))
+    else:
+        points, joints, weights = found
+        outer = _outermost(points)
+        points, joints, weights = points[outer], joints[outer], weights[outer]
+    return Sole(joints, weights, points[:, None] - rest[joints], points)
 
 
 def _is_below(parents: NDArray[np.int32], joint: int, top: int) -> bool:
@@ -58,16 +61,15 @@ def _is_below(parents: NDArray[np.int32], joint: int, top: int) -> bool:
     return here == top
 
 
-def _carried(character: Character, foot: list[int]) -> tuple[NDArray[np.int32], Floats] | None:
-    """The vertices that go with the foot: the joint that carries each most, and their places at rest."""
+def _carried(character: Character, foot: list[int]) -> tuple[Floats, NDArray[np.int32], Floats] | None:
+    """The vertices that go with the foot: places at rest, joints and weights."""
     merged = character.merged
     joints = merged.joints % len(character.joints)
-    shares = np.stack([np.where(joints == joint, merged.weights, 0).sum(axis=1) for joint in foot], axis=1)
-    own = shares.sum(axis=1) > _OWN
+    own = np.where(np.isin(joints, foot), merged.weights, 0).sum(axis=1) > _OWN
     if not own.any():
         return None
     places = character.skin(character.rest_pose())[0, own].astype(np.float64)
-    return np.array(foot, np.int32)[shares[own].argmax(axis=1)], places
+    return places, joints[own], merged.weights[own].astype(np.float64)
 
 
 def _outermost(points: Floats) -> NDArray[np.intp]:
@@ -87,5 +89,5 @@ def heights(sole: Sole, turns: Floats, places: Floats) -> Floats:
         turns: (F, J, 4) of the character's joints, from rest.
         places: (F, J, 3) of the character's joints.
     """
-    points = places[:, sole.joints, 1] + rotated(turns[:, sole.joints], sole.vectors)[..., 1]
-    return np.asarray(points.min(axis=1), np.float64)
+    carried = places[:, sole.joints, 1] + rotated(turns[:, sole.joints], sole.vectors)[..., 1]
+    return np.asarray((carried * sole.weights).sum(axis=-1).min(axis=1), np.float64)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,6 @@ from gmr.errors import GmrError
 from gmr.motion import Motion
 from gmr.skeleton import Skeleton
 from gmr.skinning.alignment import Pairs
-from gmr.skinning.body_parts import Body
 from gmr.skinning.character import Character
 from gmr.skinning.following import Following
 from gmr.skinning.rest_poses import MotionRest
@@ -32,7 +32,6 @@ class Stage:
         scene: its unit and axes.
         character: what plays it.
         following: who follows whom.
-        bodies: parts of the character and of the motion, by the joints in which bones begin; None: not known.
         rest: of the motion.
     """
 
@@ -40,7 +39,6 @@ class Stage:
     scene: Scene
     character: Character
     following: Following
-    bodies: tuple[Body | None, Body | None]
     rest: MotionRest
 
     @property
@@ -49,11 +47,15 @@ class Stage:
         return np.asarray(self.character.rest_pose()[:, :3, 3], np.float64)
 
     def both(self, part: str) -> tuple[int, int] | None:
-        """The joint of a part in the character, where it follows, and in the motion."""
-        mine, theirs = self.bodies
-        one = mine.one(part) if mine else None
-        other = theirs.one(part) if theirs else None
-        return None if one is None or other is None or one not in self.following.bones else (one, other)
+        """The joint of a part in the character, and where the bone that it follows begins in the motion."""
+        return self._both.get(part)
+
+    @cached_property
+    def _both(self) -> dict[str, tuple[int, int]]:
+        found: dict[str, tuple[int, int]] = {}
+        for joint, part in self.following.parts.items():
+            found.setdefault(part, (joint, self.following.bones[joint].start))
+        return found
 
     def sides(self, part: str) -> tuple[tuple[int, int], tuple[int, int]] | None:
         """(left, right) of a part in the character and in the motion."""

@@ -29,11 +29,15 @@ _BLEND = 0.1
 """Seconds over which a foot comes to the ground and leaves it."""
 _SINKING = 0.2
 """Seconds over which hips come down and rise again."""
+_SMOOTH = 0.4
+"""Seconds over which the height of the ground is averaged, before and after."""
 _NEARLY_STRAIGHT = 0.998
 """Share of its length to which a leg may be straightened, unless it was straighter before."""
 _GROUND = 0.06
-"""Metres, in the motion, above the lowest place of either ball beyond which a contact is none with the
-ground: a step, or the height of the swing of someone who walks in place, where a foot is slow."""
+"""Metres, in the motion, above the lowest place of either ball nearby beyond which a contact is none with the
+ground: such as the height of the swing of someone who walks in place, where a foot is slow."""
+_NEARBY = 0.6
+"""Seconds before and after."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +107,7 @@ class FootReport:
 
 def stood(
     puppet: Puppet, legs: Sequence[Leg], anchor: int, placed: Mapping[int, Floats], frame_time: float
-) -> tuple[Puppet, float, Floats]:
+) -> tuple[Puppet, Floats, Floats]:
     """The character with its feet on the ground.
 
     Args:
@@ -114,10 +118,10 @@ def stood(
         frame_time: seconds.
 
     Returns:
-        The character, by how many metres it was raised as a whole, and (F,) metres by which the hips sank.
+        The character, (F,) metres by which it was raised as a whole, and (F,) by which its hips sank.
     """
     soles = [sole_of(puppet.character, leg.ankle) for leg in legs]
-    floor = floor_of(puppet, soles)
+    floor = floor_of(soles)
     fps = 1 / frame_time if frame_time else 0
     blend = max(round(_BLEND * fps), 1)
     targets = [_ankle(leg, blend) for leg in legs]
@@ -125,10 +129,10 @@ def stood(
         _heights_at(puppet, leg, sole, target) - floor
         for leg, sole, target in zip(legs, soles, targets, strict=True)
     ]
-    raised = _raised(legs, above)
+    raised = _raised(legs, above, max(round(_SMOOTH * fps), 1))
     for leg, target, height in zip(legs, targets, above, strict=True):
         target[:, 1] += raised + _lacking(leg, height + raised, blend)
-    placed = {joint: place + raised * _UP for joint, place in placed.items()}
+    placed = {joint: place + raised[:, None] * _UP for joint, place in placed.items()}
     lifted = strung(puppet.character, puppet.turns, anchor, placed)
     sunk = _sinking(lifted, legs, targets, round(_SINKING * fps))
     placed[anchor] = placed[anchor] - sunk[:, None] * _UP
@@ -139,17 +143,23 @@ def stood(
     return strung(puppet.character, turns, anchor, placed), raised, sunk
 
 
-def floor_of(puppet: Puppet, soles: Sequence[Sole]) -> float:
+def floor_of(soles: Sequence[Sole]) -> float:
     """Height of the soles at rest."""
-    rest = puppet.character.rest_pose()[:, :3, 3]
-    return float(min((rest[sole.joints] + sole.vectors)[:, 1].min() for sole in soles))
+    return float(min(sole.rest[:, 1].min() for sole in soles))
 
 
-def on_ground(steps: Steps, lowest: float) -> Steps:
-    """The same with only the contacts that are with the ground; ``lowest``: height of the lowest ball."""
-    highest = lowest + _GROUND * steps.metre
-    held = [one for one in steps.contacts if np.median(steps.ball[one.first : one.end, 1]) <= highest]
-    return replace(steps, contacts=tuple(held))
+def on_ground(legs: Sequence[Leg], frame_time: float) -> list[Leg]:
+    """The legs with only those contacts that are with the ground."""
+    around = round(_NEARBY / frame_time) if frame_time else 0
+    lower = np.min([leg.steps.ball[:, 1] for leg in legs], axis=0)
+
+    def is_low(steps: Steps, one: Contact) -> bool:
+        lowest = lower[max(one.first - around, 0) : one.end + around].min()
+        return bool(np.median(steps.ball[one.first : one.end, 1]) <= lowest + _GROUND * steps.metre)
+
+    held = [tuple(one for one in leg.steps.contacts if is_low(leg.steps, one)) for leg in legs]
+    steps = [replace(leg.steps, contacts=own) for leg, own in zip(legs, held, strict=True)]
+    return [replace(leg, steps=own) for leg, own in zip(legs, steps, strict=True)]
 
 
 def _ankle(leg: Leg, blend: int) -> Floats:
@@ -187,16 +197,22 @@ def _heights_at(puppet: Puppet, leg: Leg, sole: Sole, ankle: Floats) -> Floats:
     return heights(sole, puppet.turns, places)
 
 
-def _raised(legs: Sequence[Leg], above: Sequence[Floats]) -> float:
-    """By how much the whole is raised: what contacts lack in the middle, or else the lowest frame."""
-    lacking = [
-        -height[one.first : one.end]
+def _raised(legs: Sequence[Leg], above: Sequence[Floats], width: int) -> Floats:
+    """(F,) by how much the whole is raised: what the contacts lack, each in the middle, and smoothly from one
+    to the next, for the floor of a recording may slope by centimetres; without contacts, what the lowest
+    frame lacks."""
+    count = len(above[0])
+    lacking = sorted(
+        ((one.first + one.end - 1) / 2, -float(np.median(height[one.first : one.end])))
         for leg, height in zip(legs, above, strict=True)
         for one in leg.steps.contacts
-    ]
-    if lacking:
-        return float(np.median(np.concatenate(lacking)))
-    return -float(min(height.min(initial=np.inf) for height in above)) if len(above[0]) else 0.0
+    )
+    if not lacking:
+        return np.full(count, -float(min(height.min() for height in above)))
+    frames, values = zip(*lacking, strict=True)
+    window = np.hanning(2 * width + 3)[1:-1]
+    padded = np.pad(np.interp(np.arange(count), frames, values), width, mode="edge")
+    return np.convolve(padded, window / window.sum(), mode="valid")
 
 
 def _lacking(leg: Leg, height: Floats, blend: int) -> Floats:
@@ -255,7 +271,7 @@ def _ancestry(parents: NDArray[np.int32], joint: int) -> set[int]:
 def measured_feet(puppet: Puppet, legs: Sequence[Leg]) -> tuple[FootReport, ...]:
     """How the feet stand in the contacts of the motion."""
     soles = [sole_of(puppet.character, leg.ankle) for leg in legs]
-    floor = floor_of(puppet, soles)
+    floor = floor_of(soles)
     found = []
     for leg, sole in zip(legs, soles, strict=True):
         height = heights(sole, puppet.turns, puppet.places) - floor
