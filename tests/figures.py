@@ -35,7 +35,7 @@ BODY: Mapping[str, tuple[str, tuple[float, float, float]]] = {
         )
     },
 }
-"""Parent and vector from it, in metres, of each joint of a body in an A-pose that faces +Z; soles are at 0."""
+"""Parent and vector from it, in metres, of each joint of a body that rests in an A-pose and faces +Z."""
 
 
 def character(
@@ -85,7 +85,7 @@ def character(
         material=None,
         joints=np.repeat(np.arange(count, dtype=np.int32), 8)[:, None],
         weights=np.ones((8 * count, 1), np.float32),
-        inverse_bind=np.linalg.inv(rest),
+        inverse_bind=np.linalg.inv(rest).astype(np.float64),
         node=count,
     )
     return Character("figure", nodes, np.arange(count, dtype=np.int32), (part,))
@@ -109,7 +109,8 @@ def body(
         rename: other names.
     """
     names = list(BODY)
-    turns, places = {}, {}
+    turns: dict[str, Floats] = {}
+    places: dict[str, Floats] = {}
     about = np.array([0.0, np.sin(facing / 2), 0.0, np.cos(facing / 2)])
     for name, (parent, offset) in BODY.items():
         above = turns.get(parent, about)

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import figures
 import gmr
 from c3d_files import as_written_by, recorded
 from gmr.demo import demo_folder
@@ -33,7 +34,7 @@ def pages_with(language: str) -> list[Path]:
 @pytest.fixture
 def reader_folder(tmp_path: Path) -> Path:
     """What the documentation assumes: two walks as walk.bvh and walk.c3d, the latter as mips.c3d too,
-    figure.gltf, 07_01.amc, 07.asf, clips in takes/."""
+    figure.gltf, man.glb, 07_01.amc, 07.asf, clips in takes/."""
     takes = tmp_path / "takes"
     takes.mkdir()
     for clip in ("02_01", "07_01", "07_12", "08_01", "09_01", "09_02"):
@@ -44,6 +45,7 @@ def reader_folder(tmp_path: Path) -> Path:
     shutil.copy(ROOT / "tests" / "data" / "rigged_simple.gltf", tmp_path / "figure.gltf")
     walk = recorded(tmp_path / "walk.c3d", noisy(worn(), 0.5)).read_bytes()
     (tmp_path / "mips.c3d").write_bytes(as_written_by(walk, "MIPS"))
+    gmr.write_character(figures.body(), tmp_path / "man.glb")
     return tmp_path
 
 

@@ -7,7 +7,6 @@ import os
 import warnings
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -229,7 +228,7 @@ def test_a_motion_without_a_rest_pose_is_driven_from_a_frame(seed: int) -> None:
         drive(motion, character)
     one, other = drive(motion, character, rest=3), drive(SHORT, character, rest=3)
     assert "frame 3" in one.report.rest
-    assert np.allclose(one.poses, other.poses, rtol=0, atol=1e-9)
+    assert np.allclose(one.poses, other.poses, rtol=0, atol=1e-7)
     with pytest.raises(GmrError, match="frames 0 to 9"):
         drive(motion, character, rest=10)
 
@@ -388,23 +387,28 @@ def test_one_frame_is_set_on_the_ground() -> None:
 
 def test_shipped_namings_tell_bodies() -> None:
     skeletons = {
-        "Mixamo": ["mixamorig:Hips", "mixamorig:LeftUpLeg", "mixamorig:RightUpLeg", "mixamorig:LeftFoot", "mixamorig:RightFoot", "mixamorig:Spine", "mixamorig:LeftToeBase", "mixamorig:LeftHandThumb1"],
-        "Bandai-Namco": ["joint_Root", "Hips", "UpperLeg_L", "UpperLeg_R", "Foot_L", "Foot_R", "UpperArm_L", "LowerArm_L", "Toes_L"],
-        "Unreal": ["pelvis", "thigh_l", "thigh_r", "calf_l", "foot_l", "foot_r", "ball_l", "spine_01", "spine_02"],
-        "Poser": ["hip", "lThigh", "rThigh", "lShin", "lFoot", "rFoot", "lShldr", "abdomen"],
-        "ASF": ["root", "lfemur", "rfemur", "ltibia", "lfoot", "rfoot", "lradius", "lowerback"],
-        "Biovision": ["Hips", "LeftHip", "RightHip", "LeftKnee", "LeftAnkle", "RightAnkle", "LeftCollar", "Chest"],
-        "Xsens": ["Pelvis", "LeftUpperLeg", "RightUpperLeg", "LeftLowerLeg", "LeftFoot", "RightFoot", "L5", "T8"],
-        "LaFAN1": ["Hips", "LeftUpLeg", "RightUpLeg", "LeftLeg", "LeftFoot", "RightFoot", "LeftToe", "Spine2"],
-        "CMU BVH": ["Hips", "LeftUpLeg", "RightUpLeg", "LeftFoot", "RightFoot", "LowerBack", "Spine", "Spine1"],
-    }  # fmt: skip
-    for title, names in skeletons.items():
+        "Mixamo": "mixamorig:Hips mixamorig:%UpLeg mixamorig:%Foot mixamorig:%ToeBase mixamorig:%HandRing1",
+        "Bandai-Namco": "Hips Spine Chest UpperLeg_% LowerLeg_% Foot_% Toes_% UpperArm_% LowerArm_%",
+        "Unreal": "pelvis spine_01 spine_02 thigh_% calf_% foot_% ball_% upperarm_%",
+        "Biped": "Bip01_Pelvis Bip01_Spine Bip01_%_Thigh Bip01_%_Calf Bip01_%_Foot Bip01_%_UpperArm",
+        "Poser": "hip abdomen chest %Thigh %Shin %Foot %Shldr",
+        "ASF": "root lowerback thorax %femur %tibia %foot %radius",
+        "Biovision": "Hips Chest %Collar %Shoulder %Elbow %Hip %Knee %Ankle",
+        "Xsens": "Pelvis L5 T8 %UpperLeg %LowerLeg %Foot %UpperArm",
+        "LaFAN1": "Hips Spine Spine1 Spine2 %UpLeg %Leg %Foot %Toe %Shoulder %Arm",
+        "CMU BVH": "Hips LowerBack Spine Spine1 %UpLeg %Leg %Foot %ToeBase",
+    }
+    sides = {"Bandai-Namco": "LR", "Unreal": "lr", "Biped": "LR", "Poser": "lr", "ASF": "lr"}
+    for title, pattern in skeletons.items():
+        words = pattern.split()
+        called = sides.get(title, ("Left", "Right"))
+        names = [word.replace("%", side) for word in words for side in (called if "%" in word else ("",))]
         skeleton = Skeleton.post_rotation(names, [-1, *[0] * (len(names) - 1)], np.zeros((len(names), 3)))
         body = find_body(skeleton, np.zeros((len(names), 3)))
         assert body is not None
         assert body.found_by == title
         known = {joint for joints in body.parts.values() for joint in joints}
-        assert [name for k, name in enumerate(names) if k not in known] in ([], ["joint_Root"])
+        assert [name for k, name in enumerate(names) if k not in known] == []
 
 
 def cesium_man() -> Character:
@@ -422,12 +426,9 @@ def test_cesium_man_walks(file: Path) -> None:
     character = cesium_man()
     motion = gmr.read(file)
     driven = drive(motion, character)
-    at: dict[str, Any] = {
-        part: driven.poses[:, joints[0], :3, 3]
-        for part, joints in (
-            find_body(character.skeleton, character.rest_pose()[:, :3, 3]) or pytest.fail()
-        ).parts.items()
-    }
+    body = find_body(character.skeleton, character.rest_pose()[:, :3, 3])
+    assert body is not None
+    at = {part: driven.poses[:, joints[0], :3, 3] for part, joints in body.parts.items()}
     assert not driven.report.unmatched_character
     left = directions(at["right_up_leg"], at["left_up_leg"])
     for side in ("left", "right"):

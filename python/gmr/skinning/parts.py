@@ -105,7 +105,7 @@ def _keys(name: str) -> list[tuple[str, str]]:
 def _meanings(name: str) -> list[tuple[str, str]]:
     side, part = side_and_part(name)
     if side:
-        return [(side, part)]
+        return [(side, part), ("", _plain(name))]  # L5 is a vertebra
     # lradius: an l or r before a word that only a naming knows.
     own = _plain(part)
     guesses = [(_SIDE_LETTERS[own[0]], own[1:])] if own[:1] in _SIDE_LETTERS else []

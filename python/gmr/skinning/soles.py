@@ -16,6 +16,8 @@ Floats = NDArray[np.float64]
 
 _OWN = 0.5
 """Weight above which a vertex goes with the foot."""
+_SHARES = 4
+"""Steps between 0 and 1 in which weights are told apart."""
 _DIRECTIONS = 16
 """Around the vertical, in which the outermost points are looked for."""
 
@@ -49,7 +51,7 @@ def sole_of(character: Character, ankle: int) -> Sole:
         joints, weights = np.array(foot, np.int32)[:, None], np.ones((len(foot), 1))
     else:
         points, joints, weights = found
-        outer = _outermost(points)
+        outer = _outermost_of_each_kind(points, joints, weights)
         points, joints, weights = points[outer], joints[outer], weights[outer]
     return Sole(joints, weights, points[:, None] - rest[joints], points)
 
@@ -70,6 +72,16 @@ def _carried(character: Character, foot: list[int]) -> tuple[Floats, NDArray[np.
         return None
     places = character.skin(character.rest_pose())[0, own].astype(np.float64)
     return places, joints[own], merged.weights[own].astype(np.float64)
+
+
+def _outermost_of_each_kind(points: Floats, joints: NDArray[np.int32], weights: Floats) -> NDArray[np.intp]:
+    """Indices of the outermost points among those that the same joints carry in about the same shares, for
+    these move nearly as one."""
+    shares = np.round(weights * _SHARES).astype(np.int64)
+    kinds = np.concatenate([np.where(shares > 0, joints, -1), shares], axis=1)
+    _, kind = np.unique(kinds, axis=0, return_inverse=True)
+    groups = [np.flatnonzero(kind.ravel() == k) for k in range(kind.max() + 1)]
+    return np.concatenate([group[_outermost(points[group])] for group in groups])
 
 
 def _outermost(points: Floats) -> NDArray[np.intp]:

@@ -1,0 +1,81 @@
+"""``gmr skin``: a motion drives a character from the command line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import figures
+import gmr
+from gmr.cli.commands import gmr as command
+from gmr.cli.common import finished
+from gmr.demo import demo_folder
+from test_gltf_writing import verdicts
+
+WALK = demo_folder() / "07_01.bvh"
+AMC = Path(__file__).parent / "data" / "amc" / "07_01.amc"
+Captured = pytest.CaptureFixture[str]
+
+
+def run(*args: str | Path) -> int:
+    """The exit code of ``gmr skin ARGS``, in this process."""
+    return finished(command, ["skin", *(str(arg) for arg in args)])
+
+
+@pytest.fixture
+def man(tmp_path: Path) -> Path:
+    gmr.write_character(figures.body(), tmp_path / "man.glb")
+    return tmp_path / "man.glb"
+
+
+@pytest.mark.parametrize("motion", [WALK, AMC], ids=["bvh", "amc"])
+def test_the_moving_character_is_written_and_said(man: Path, motion: Path, capsys: Captured) -> None:
+    out = man.with_name("walking.glb")
+    assert run(man, motion, out, "--fps", "30") == 0
+    said = capsys.readouterr().out
+    for part in ("frames,", "21 joints follow", "'Tail'", "scale: 1.0", "by the legs", "left foot: "):
+        assert part in said
+    moving = gmr.read_character(out)
+    driven = gmr.skinning.drive(gmr.read(motion), gmr.read_character(man), fps=30)
+    assert np.allclose(moving.animation(fps=30), driven.poses, atol=1e-5)
+
+
+def test_the_khronos_validator_accepts_a_moving_character(man: Path) -> None:
+    out = man.with_name("walking.glb")
+    assert run(man, WALK, out) == 0
+    assert [one["errors"] for one in verdicts([out])] == [0]
+
+
+def test_the_report_as_json(man: Path, capsys: Captured) -> None:
+    assert run(man, WALK, man.with_name("walking.glb"), "--json", "--no-ground", "--scale", "2") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["follows"]["LeftUpperArm"] == "LeftArm"
+    assert found["unmatched_character"] == ["Tail"]
+    assert (found["frames"], found["left_out"]) == (316, 1)
+    assert found["scale"] == pytest.approx(2)
+    assert [foot["side"] for foot in found["feet"]] == ["left", "right"]
+
+
+def test_a_map_says_who_follows_whom(man: Path, capsys: Captured) -> None:
+    names = man.with_name("names.toml")
+    names.write_text('[follows]\nTail = "LThumb"\nHead = ""\n')
+    assert run(man, WALK, man.with_name("walking.glb"), "--map", names, "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["follows"]["Tail"] == "LThumb"
+    assert found["unmatched_character"] == ["Head"]
+
+
+def test_what_cannot_be_is_one_sentence(man: Path, capsys: Captured) -> None:
+    out = man.with_name("walking.gltf")
+    assert run(man, WALK, out) == 2
+    assert "written as .glb" in capsys.readouterr().err
+    rod = figures.character(["rod", "tip"], [-1, 0], np.array([[0.0, 0, 0], [0, 1, 0]]))
+    gmr.write_character(rod, man.with_name("rod.glb"))
+    assert run(man.with_name("rod.glb"), WALK, man.with_name("walking.glb")) == 1
+    said = capsys.readouterr().err
+    assert "07_01.bvh" in said
+    assert "--map FILE" in said
+    assert not man.with_name("walking.glb").exists()
