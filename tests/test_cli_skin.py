@@ -79,3 +79,23 @@ def test_what_cannot_be_is_one_sentence(man: Path, capsys: Captured) -> None:
     assert "07_01.bvh" in said
     assert "--map FILE" in said
     assert not man.with_name("walking.glb").exists()
+
+
+def test_the_comparison_is_written_without_a_moving_character(man: Path, capsys: Captured) -> None:
+    pytest.importorskip("pyvista")
+    folder = man.with_name("compared")
+    assert run(man, WALK, "--fps", "10", "--compare", folder, "--no-film", "--json") == 0
+    captured = capsys.readouterr()
+    assert json.loads(captured.out)["page"] == str(folder / "index.html")
+    assert "Linear blending loses up to" in captured.err
+    assert "07_01" in (folder / "index.html").read_text(encoding="utf-8")
+    assert not (folder / "side_by_side.mp4").exists()
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [([], "name OUT.glb, or --compare FOLDER"), (["out.glb", "--no-film"], "the film of --compare")],
+)
+def test_what_is_asked_for_must_be_said(man: Path, args: list[str], said: str, capsys: Captured) -> None:
+    assert run(man, WALK, *args) == 2
+    assert said in capsys.readouterr().err

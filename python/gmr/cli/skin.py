@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING
 import click
 
 from gmr.cli.common import Rate, naming, read_noting, reading_options, say
+from gmr.cli.progress import Phases
 from gmr.errors import FormatWarning
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
     from gmr.skinning.character import Character
+    from gmr.skinning.driven import Driven
 
 __all__ = ["skin"]
 
@@ -22,7 +24,14 @@ __all__ = ["skin"]
 @click.command(short_help="Let a motion drive a character; write it as GLB.")
 @click.argument("character", metavar="CHARACTER")
 @click.argument("motion", metavar="MOTION")
-@click.argument("out", metavar="OUT.glb")
+@click.argument("out", metavar="[OUT.glb]", required=False)
+@click.option(
+    "--compare",
+    metavar="FOLDER",
+    type=click.Path(file_okay=False),
+    help="Write a page that compares ways of skinning, its pictures, film and tables.",
+)
+@click.option("--no-film", is_flag=True, help="Leave the film out of --compare: it takes longest to draw.")
 @click.option(
     "--map",
     "names",
@@ -44,7 +53,9 @@ __all__ = ["skin"]
 def skin(
     character: str,
     motion: str,
-    out: str,
+    out: str | None,
+    compare: str | None,
+    no_film: bool,
     names: str | None,
     fps: float | None,
     rest: int | None,
@@ -63,7 +74,8 @@ def skin(
     CHARACTER is a .glb or .gltf with a skin, or, with --bind, any mesh that stands in metres where MOTION's
     skeleton stands at rest; MOTION is a .bvh, an .amc, a .glb or any other motion. Their joints may have
     other names, their bones other lengths, and they may rest in other poses: what follows what is found by
-    names, or by the shape of the body, and said. Vertices are bent by whoever shows OUT.glb.
+    names, or by the shape of the body, and said. Vertices are bent by whoever shows OUT.glb; what linear
+    blending, dual quaternions and centres of rotation make of them, --compare shows.
 
     \b
     Examples:
@@ -72,9 +84,9 @@ def skin(
       gmr skin figure.glb take.bvh moving.glb --map names.toml
       gmr skin figure.glb take.bvh moving.glb --rest 0    where the file has no rest pose of its own
       gmr skin body.obj walk.bvh walking.glb --bind
+      gmr skin figure.glb walk.bvh --compare compared/    a page: what each way of skinning does
     """
-    if Path(out).suffix.lower() != ".glb":
-        raise click.UsageError(f"'{out}': a moving character is written as .glb; name OUT so")
+    _check(out, compare, no_film)
     from gmr.formats import write_character
     from gmr.skinning.driving import drive
 
@@ -89,14 +101,38 @@ def skin(
         say(warning)
     with naming(played):
         driven = drive(played, shown, names=names, fps=fps, root_scale=scale, ground=not no_ground, rest=rest)
-    write_character(shown, out, driven.poses, driven.frame_time)
+    if out is not None:
+        write_character(shown, out, driven.poses, driven.frame_time)
+    page = None if compare is None else _compared(shown, driven, Path(motion).stem, compare, not no_film)
     frames = len(driven.poses)
     if as_json:
-        written = {"character": character, "motion": motion, "out": out, "frames": frames}
+        written = {"character": character, "motion": motion, "out": out, "page": page, "frames": frames}
         click.echo(json.dumps({**written, **driven.report.as_dict()}, indent=2, allow_nan=False))
     else:
-        click.echo(f"{out}: {frames} frames, {frames * driven.frame_time:.2f} s\n{driven.report}")
+        click.echo(f"{out or motion}: {frames} frames, {frames * driven.frame_time:.2f} s\n{driven.report}")
+        if page is not None:
+            click.echo(f"compared: {page}")
     return 0
+
+
+def _check(out: str | None, compare: str | None, no_film: bool) -> None:
+    if out is None and compare is None:
+        raise click.UsageError("nothing is asked for; name OUT.glb, or --compare FOLDER, or both")
+    if out is not None and Path(out).suffix.lower() != ".glb":
+        raise click.UsageError(f"'{out}': a moving character is written as .glb; name OUT so")
+    if no_film and compare is None:
+        raise click.UsageError("--no-film leaves out the film of --compare, which is not asked for")
+
+
+def _compared(character: Character, driven: Driven, motion: str, folder: str, with_film: bool) -> str:
+    """Writes the comparison, says what it comes to, and gives the page's path."""
+    from gmr.skinning import comparison
+
+    compared = comparison.compare(character, driven.poses, driven.frame_time, motion=motion)
+    with Phases() as phases:
+        page = comparison.write_comparison(compared, folder, with_film=with_film, progress=phases.tell)
+    say(comparison.headline(compared))
+    return str(page)
 
 
 def _character(path: str, motion: Motion | None, strict: bool) -> tuple[Character, list[str]]:

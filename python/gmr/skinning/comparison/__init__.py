@@ -14,7 +14,7 @@ from typing import Final
 from gmr.replacing import replacing
 from gmr.skinning.comparison.measured import METHODS, Comparison, compare
 from gmr.skinning.comparison.page import headline, page
-from gmr.skinning.comparison.pictures import Picture, direction, pictures
+from gmr.skinning.comparison.pictures import Picture, direction, picture_count, pictures
 from gmr.skinning.comparison.rendering import View, film, film_frames, look_of
 
 __all__ = ["METHODS", "Comparison", "Picture", "compare", "headline", "page", "pictures", "write_comparison"]
@@ -50,10 +50,11 @@ def write_comparison(
         OSError: the folder may not be written to, or the disk is full.
     """
     target = Path(folder)
-    drawn = []
-    for number, picture in enumerate(pictures(of)):
+    drawn, count = [], picture_count(of)
+    progress("stills", 0, count)
+    for picture in pictures(of):
         drawn.append(picture)
-        progress("stills", number + 1, 5)
+        progress("stills", len(drawn), count)
     moving = _film(of, progress) if with_film else None
     target.mkdir(parents=True, exist_ok=True)
     for name in ("frames", "apart", "capsule"):
@@ -76,6 +77,7 @@ def _film(of: Comparison, progress: Progress) -> bytes:
     look = look_of(of.character)
     views = [View(name, of.character.skin(poses, method), look) for method, name in METHODS.items()]
     total = len(film_frames(len(poses), of.frame_time))
+    progress("film", 0, total)
     with tempfile.TemporaryDirectory() as room:
         path = Path(room) / "film.mp4"
         film(

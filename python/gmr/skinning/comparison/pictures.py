@@ -14,7 +14,7 @@ from gmr.skinning.capsule import Movement, capsule, transforms
 from gmr.skinning.comparison.measured import METHODS, Comparison
 from gmr.skinning.comparison.rendering import Look, View, look_of, still
 
-__all__ = ["Picture", "direction", "pictures"]
+__all__ = ["Picture", "direction", "picture_count", "pictures"]
 
 _SIZE: Final = (1200, 620)
 _CAPSULE_SIZE: Final = (1200, 430)
@@ -47,6 +47,11 @@ def pictures(of: Comparison) -> Iterator[Picture]:
     look = look_of(of.character)
     for frame in of.most_apart(_FRAMES):
         yield _frame(of, look, frame)
+
+
+def picture_count(of: Comparison) -> int:
+    """How many stills :func:`pictures` draws."""
+    return len(_CAPSULES) + len(of.most_apart(_FRAMES))
 
 
 def direction(of: Comparison) -> NDArray[np.float64]:

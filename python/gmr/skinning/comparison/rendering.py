@@ -118,6 +118,8 @@ def _plotter(
         import pyvista
     except ImportError:
         raise MissingExtraError("pyvista", "render", "Drawing skinned meshes") from None
+    # VTK tries a screen first, and where there is none says so before it goes on without.
+    pyvista.vtk_verbosity("off")
     plotter = pyvista.Plotter(shape=(1, len(views)), off_screen=True, window_size=list(size), border=False)
     try:
         plotter.set_background("white")
