@@ -79,3 +79,25 @@ def test_what_cannot_be_is_one_sentence(man: Path, capsys: Captured) -> None:
     assert "07_01.bvh" in said
     assert "--map FILE" in said
     assert not man.with_name("walking.glb").exists()
+
+
+def test_a_mesh_without_a_skin_is_bound_to_the_motion(tmp_path: Path, capsys: Captured) -> None:
+    motion = gmr.read(WALK).with_unit("cmu").to_unit("m")
+    skeleton = motion.skeleton
+    places = np.zeros((skeleton.joint_count, 3))
+    for joint in skeleton.parents_first[1:]:
+        places[joint] = places[skeleton.parents[joint]] + skeleton.offsets[joint]
+    mesh = figures.character(skeleton.names, skeleton.parents.tolist(), places).merged
+    faces = figures.character(skeleton.names, skeleton.parents.tolist(), places).faces + 1
+    lines = [f"v {x} {y} {z}" for x, y, z in mesh.vertices.tolist()]
+    lines += [f"f {a} {b} {c}" for a, b, c in faces.tolist()]
+    (tmp_path / "body.obj").write_text("\n".join(lines) + "\n")
+    out = tmp_path / "walking.glb"
+    assert run(tmp_path / "body.obj", WALK, out, "--bind", "--no-ground", "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert "names, which are the same" in found["matched_by"]
+    assert found["scale"] == pytest.approx(1)
+    moving = gmr.read_character(out)
+    joints = ["Hips", "Head", "LeftHand", "RightToeBase"]
+    there = moving.animation(fps=120)[:, [moving.joint_names.index(name) for name in joints]][..., :3, 3]
+    assert np.allclose(there, motion[1:].positions(joints=joints, dtype=np.float64), atol=1e-4)
