@@ -99,3 +99,25 @@ def test_the_comparison_is_written_without_a_moving_character(man: Path, capsys:
 def test_what_is_asked_for_must_be_said(man: Path, args: list[str], said: str, capsys: Captured) -> None:
     assert run(man, WALK, *args) == 2
     assert said in capsys.readouterr().err
+
+
+def test_a_mesh_without_a_skin_is_bound_to_the_motion(tmp_path: Path, capsys: Captured) -> None:
+    motion = gmr.read(WALK).with_unit("cmu").to_unit("m")
+    skeleton = motion.skeleton
+    places = np.zeros((skeleton.joint_count, 3))
+    for joint in skeleton.parents_first[1:]:
+        places[joint] = places[skeleton.parents[joint]] + skeleton.offsets[joint]
+    mesh = figures.character(skeleton.names, skeleton.parents.tolist(), places).merged
+    faces = figures.character(skeleton.names, skeleton.parents.tolist(), places).faces + 1
+    lines = [f"v {x} {y} {z}" for x, y, z in mesh.vertices.tolist()]
+    lines += [f"f {a} {b} {c}" for a, b, c in faces.tolist()]
+    (tmp_path / "body.obj").write_text("\n".join(lines) + "\n")
+    out = tmp_path / "walking.glb"
+    assert run(tmp_path / "body.obj", WALK, out, "--bind", "--no-ground", "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert "names, which are the same" in found["matched_by"]
+    assert found["scale"] == pytest.approx(1)
+    moving = gmr.read_character(out)
+    joints = ["Hips", "Head", "LeftHand", "RightToeBase"]
+    there = moving.animation(fps=120)[:, [moving.joint_names.index(name) for name in joints]][..., :3, 3]
+    assert np.allclose(there, motion[1:].positions(joints=joints, dtype=np.float64), atol=1e-4)

@@ -16,7 +16,7 @@ from gmr.errors import FormatWarning
 if TYPE_CHECKING:
     from gmr.motion import Motion
     from gmr.skinning.character import Character
-    from gmr.skinning.driven import Driven
+    from gmr.skinning.driving import Driven
 
 __all__ = ["skin"]
 

@@ -9,8 +9,7 @@ if TYPE_CHECKING:
     from gmr.skinning.binding import Binding, BindingReport, BindMethod, bind
     from gmr.skinning.blending import Hemisphere, Method, Skin
     from gmr.skinning.character import Character
-    from gmr.skinning.driven import Driven, DrivingReport
-    from gmr.skinning.driving import drive
+    from gmr.skinning.driving import Driven, DrivingReport, drive
     from gmr.skinning.keyframes import Animation, Channel
     from gmr.skinning.nodes import Nodes
     from gmr.skinning.part import Part
@@ -44,8 +43,8 @@ _HOMES = {
     "BindingReport": "gmr.skinning.binding",
     "Channel": "gmr.skinning.keyframes",
     "Character": "gmr.skinning.character",
-    "Driven": "gmr.skinning.driven",
-    "DrivingReport": "gmr.skinning.driven",
+    "Driven": "gmr.skinning.driving",
+    "DrivingReport": "gmr.skinning.driving",
     "Hemisphere": "gmr.skinning.blending",
     "Material": "gmr.skinning.appearance",
     "Method": "gmr.skinning.blending",

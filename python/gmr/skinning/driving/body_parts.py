@@ -12,7 +12,7 @@ from gmr.body.joints import find_joints
 from gmr.body.measures import path
 from gmr.errors import DatasetError
 from gmr.skeleton import Skeleton
-from gmr.skinning.parts import Parts, parts_by_name
+from gmr.skinning.driving.parts import Parts, parts_by_name
 
 __all__ = ["Body", "find_body"]
 

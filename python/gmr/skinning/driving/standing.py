@@ -17,8 +17,8 @@ from gmr.editing.contacts import Contact, slide
 from gmr.editing.easing import blend_weights, eased, smooth_above
 from gmr.editing.two_bone import two_bone
 from gmr.quaternions import about, multiply, rotated
-from gmr.skinning.puppet import Puppet, strung
-from gmr.skinning.soles import Sole, heights, sole_of
+from gmr.skinning.driving.puppet import Puppet, strung
+from gmr.skinning.driving.soles import Sole, heights, sole_of
 
 __all__ = ["FootReport", "Leg", "Steps", "measured_feet", "on_ground", "stood"]
 

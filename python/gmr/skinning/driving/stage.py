@@ -13,10 +13,10 @@ from gmr.editing.scene import Scene
 from gmr.errors import GmrError
 from gmr.motion import Motion
 from gmr.skeleton import Skeleton
-from gmr.skinning.alignment import Pairs
 from gmr.skinning.character import Character
-from gmr.skinning.following import Following
-from gmr.skinning.rest_poses import MotionRest
+from gmr.skinning.driving.alignment import Pairs
+from gmr.skinning.driving.following import Following
+from gmr.skinning.driving.rest_poses import MotionRest
 
 __all__ = ["Stage", "scale_of"]
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.listing import quoted
-from gmr.skinning.standing import FootReport
+from gmr.skinning.driving.standing import FootReport
 
 __all__ = ["Driven", "DrivingReport"]
 

@@ -1,4 +1,4 @@
-"""How each joint of a character is laid on the bone that it follows: see :mod:`gmr.skinning.rest_poses`."""
+"""How each joint is laid on the bone that it follows: see :mod:`gmr.skinning.driving.rest_poses`."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from gmr.quaternions import IDENTITY, multiply, rotated
 from gmr.skeleton import Skeleton
-from gmr.skinning.following import Following
-from gmr.skinning.rest_poses import heading_turn, shortest_turn
+from gmr.skinning.driving.following import Following
+from gmr.skinning.driving.rest_poses import heading_turn, shortest_turn
 
 __all__ = ["Laid", "Pairs", "lay_on"]
 

@@ -1,9 +1,9 @@
 """A motion drives a character whose skeleton has other names, other proportions and another rest pose.
 
 Each joint of the character takes over the turn of the bone that it follows, from rest, in the world
-(:mod:`gmr.skinning.rest_poses`); hips go where the motion's go, in the measure of the legs; then the feet are
-set on the ground (:mod:`gmr.skinning.standing`). Cf. Gleicher, "Retargetting Motion to New Characters",
-SIGGRAPH 1998, whose constraints on the feet these are, met frame by frame in closed form.
+(:mod:`gmr.skinning.driving.rest_poses`); hips go where the motion's go, in the measure of the legs; then the
+feet are set on the ground (:mod:`gmr.skinning.driving.standing`). Cf. Gleicher, "Retargetting Motion to New
+Characters", SIGGRAPH 1998, whose constraints on the feet these are, met frame by frame in closed form.
 """
 
 from __future__ import annotations
@@ -22,22 +22,22 @@ from gmr.forest import home
 from gmr.motion import Motion
 from gmr.quaternions import conjugate, multiply, rotated
 from gmr.skeleton import Skeleton
-from gmr.skinning.alignment import Laid, Pairs, lay_on
-from gmr.skinning.body_parts import Body, find_body
 from gmr.skinning.character import Character
-from gmr.skinning.driven import Driven, DrivingReport
-from gmr.skinning.driven_legs import driven_legs, feet_of_motion
-from gmr.skinning.following import Names, follow, names_for_ends, read_names, with_stated
-from gmr.skinning.puppet import pose_matrices, strung
-from gmr.skinning.rest_poses import (
+from gmr.skinning.driving.alignment import Laid, Pairs, lay_on
+from gmr.skinning.driving.body_parts import Body, find_body
+from gmr.skinning.driving.driven import Driven, DrivingReport
+from gmr.skinning.driving.driven_legs import driven_legs, feet_of_motion
+from gmr.skinning.driving.following import Names, follow, names_for_ends, read_names, with_stated
+from gmr.skinning.driving.puppet import pose_matrices, strung
+from gmr.skinning.driving.rest_poses import (
     facing_turn,
     motion_rest,
     shortest_turn,
     with_flat_feet,
     zero_places,
 )
-from gmr.skinning.stage import Stage, scale_of
-from gmr.skinning.standing import measured_feet, stood
+from gmr.skinning.driving.stage import Stage, scale_of
+from gmr.skinning.driving.standing import measured_feet, stood
 from gmr.tpose import leading_rest_frames
 
 __all__ = ["drive"]

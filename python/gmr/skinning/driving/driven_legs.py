@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from gmr.body.measures import path
 from gmr.editing.contacts import contacts
 from gmr.quaternions import rotated
-from gmr.skinning.alignment import Laid
-from gmr.skinning.stage import Stage
-from gmr.skinning.standing import Leg, Steps, on_ground
+from gmr.skinning.driving.alignment import Laid
+from gmr.skinning.driving.stage import Stage
+from gmr.skinning.driving.standing import Leg, Steps, on_ground
 
 __all__ = ["driven_legs", "feet_of_motion"]
 

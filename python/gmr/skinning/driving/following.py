@@ -16,8 +16,8 @@ from gmr.body.naming import side_and_part
 from gmr.errors import FormatError, SkeletonError
 from gmr.listing import quoted
 from gmr.skeleton import Skeleton
-from gmr.skinning.body_parts import Body
-from gmr.skinning.parts import CHAINS
+from gmr.skinning.driving.body_parts import Body
+from gmr.skinning.driving.parts import CHAINS
 
 __all__ = ["Bone", "Following", "Names", "follow", "read_names"]
 

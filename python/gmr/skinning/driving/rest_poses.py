@@ -21,7 +21,7 @@ from gmr.errors import GmrError
 from gmr.frames import Pose
 from gmr.motion import Motion
 from gmr.quaternions import IDENTITY, about, rotated
-from gmr.skinning.parts import LEG_PARTS
+from gmr.skinning.driving.parts import LEG_PARTS
 from gmr.tpose import leading_rest_frames
 
 __all__ = [
@@ -35,6 +35,10 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float64]
+
+_SIDES = ("left", "right")
+_UPRIGHT = 0.7
+"""Cosine of the lean beyond which neither trunk nor leg stands."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +98,7 @@ def motion_rest(motion: Motion, begins: Mapping[str, int], up: str, frame: int |
         return MotionRest(rotated(turn, zero), still, turn, "the pose in which nothing is turned")
     stands = np.array(UP_TURNS[up_axis(zero[None], roles)])
     upright = rotated(stands, zero)
-    wrong = fault(motion.skeleton, upright[None], roles) or _upside_down(motion, upright, begins)
+    wrong = fault(motion.skeleton, upright[None], roles) or _askew(motion, upright, begins)
     if wrong is None:
         still = np.tile(IDENTITY, (motion.skeleton.joint_count, 1))
         return MotionRest(upright, still, stands, "the pose in which nothing is turned")
@@ -116,12 +120,20 @@ def _of_frame(motion: Motion, frame: int, up: str) -> MotionRest:
     return MotionRest(places, one.bone_rotations(dtype=np.float64)[0], turn, f"frame {frame}")
 
 
-def _upside_down(motion: Motion, places: Floats, begins: Mapping[str, int]) -> str | None:
-    """What should be above the hips and is not, as the rest of a sentence."""
-    for part in ("head", "neck", "left_arm", "right_arm"):
-        if part in begins and places[begins[part], 1] <= places[begins["hips"], 1]:
-            names = motion.skeleton.names
-            return f"'{names[begins[part]]}' ({part}) does not lie above '{names[begins['hips']]}' (hips)"
+def _askew(motion: Motion, places: Floats, begins: Mapping[str, int]) -> str | None:
+    """What leans or hangs as in no body that stands, as the rest of a sentence."""
+    called = {part: f"'{motion.skeleton.names[joint]}' ({part})" for part, joint in begins.items()}
+    for above, below in (("head", "hips"), ("neck", "hips"), *((f"{s}_up_leg", f"{s}_foot") for s in _SIDES)):
+        if above in begins:
+            way = places[begins[above]] - places[begins[below]]
+            if way[1] < _UPRIGHT * np.linalg.norm(way):
+                return f"{called[above]} is not above {called[below]}"
+    if all(f"{side}_arm" in begins for side in _SIDES):
+        hips, arms = (
+            places[begins[f"left_{part}"]] - places[begins[f"right_{part}"]] for part in ("up_leg", "arm")
+        )
+        if hips @ arms <= 0:
+            return f"{called['left_arm']} is to the right of {called['right_arm']}"
     return None
 
 

@@ -1,0 +1,8 @@
+"""A motion drives a character whose skeleton has other names, other proportions and another rest pose."""
+
+from __future__ import annotations
+
+from gmr.skinning.driving.driven import Driven, DrivingReport
+from gmr.skinning.driving.retarget import drive
+
+__all__ = ["Driven", "DrivingReport", "drive"]
