@@ -4,12 +4,13 @@
 //! register holds one number of each vertex. A tile of vertices meets all frames of the piece while it is near, and
 //! its answer goes out in one run.
 
+use std::marker::PhantomData;
 use std::ops::Range;
 
 use super::blend::{Frame, Hemisphere, Method, Work};
 use super::bones::{Bones, Row};
 use super::formulas::{Matrix, add, move_by, subtract, transform, transform_normal, turn_by};
-use super::skin::FEW;
+use super::skin::{FEW, Skin};
 use crate::lanes::{Kernel, Lanes, cache};
 use crate::rotation::dot;
 
@@ -32,10 +33,18 @@ impl Kernel<f32> for Tiles<'_, '_> {
         match (self.work.method, few) {
             (Method::Linear, true) => each_tile::<L, Linear, FEW>(self),
             (Method::Linear, false) => each_tile::<L, Linear, MANY>(self),
-            (Method::DualQuaternion(Hemisphere::Pivot), true) => each_tile::<L, Pivot, FEW>(self),
-            (Method::DualQuaternion(Hemisphere::Pivot), false) => each_tile::<L, Pivot, MANY>(self),
-            (Method::DualQuaternion(Hemisphere::Running), true) => each_tile::<L, Running, FEW>(self),
-            (Method::DualQuaternion(Hemisphere::Running), false) => each_tile::<L, Running, MANY>(self),
+            (Method::DualQuaternion(Hemisphere::Pivot), true) => {
+                each_tile::<L, DualQuaternion<Pivot>, FEW>(self)
+            }
+            (Method::DualQuaternion(Hemisphere::Pivot), false) => {
+                each_tile::<L, DualQuaternion<Pivot>, MANY>(self)
+            }
+            (Method::DualQuaternion(Hemisphere::Running), true) => {
+                each_tile::<L, DualQuaternion<Running>, FEW>(self)
+            }
+            (Method::DualQuaternion(Hemisphere::Running), false) => {
+                each_tile::<L, DualQuaternion<Running>, MANY>(self)
+            }
             (Method::Centers(_), true) => each_tile::<L, Centers, FEW>(self),
             (Method::Centers(_), false) => each_tile::<L, Centers, MANY>(self),
         }
@@ -139,8 +148,7 @@ trait Blending {
 }
 
 struct Linear;
-struct Pivot;
-struct Running;
+struct DualQuaternion<S>(PhantomData<S>);
 struct Centers;
 
 impl Blending for Linear {
@@ -155,7 +163,7 @@ impl Blending for Linear {
     }
 }
 
-impl Blending for Pivot {
+impl<S: Signing> Blending for DualQuaternion<S> {
     #[inline(always)]
     fn blend<L: Lanes<Real = f32>, const K: usize, const NORMALS: bool, const STRETCHED: bool>(
         mut block: Block<'_, '_>,
@@ -163,20 +171,7 @@ impl Blending for Pivot {
         n: [L; 3],
     ) -> ([L; 3], [L; 3]) {
         let (v, n) = block.stretched::<L, K, NORMALS, STRETCHED>(v, n);
-        let q = block.dual_quaternion::<L, K, Plain>(&block.work.skin.paired);
-        (move_by(q, v), if NORMALS { turn_by(q[0], n) } else { n })
-    }
-}
-
-impl Blending for Running {
-    #[inline(always)]
-    fn blend<L: Lanes<Real = f32>, const K: usize, const NORMALS: bool, const STRETCHED: bool>(
-        mut block: Block<'_, '_>,
-        v: [L; 3],
-        n: [L; 3],
-    ) -> ([L; 3], [L; 3]) {
-        let (v, n) = block.stretched::<L, K, NORMALS, STRETCHED>(v, n);
-        let q = block.dual_quaternion::<L, K, RunningSigns>(&block.work.skin.joints);
+        let q = block.dual_quaternion::<L, K, S>();
         (move_by(q, v), if NORMALS { turn_by(q[0], n) } else { n })
     }
 }
@@ -191,7 +186,7 @@ impl Blending for Centers {
         let center = points::<L>(block.work.centers, block.vertex);
         let (arm, n) = block.stretched::<L, K, NORMALS, STRETCHED>(subtract(v, center), n);
         let m = block.matrix::<L, K>(&block.bones.linear);
-        let q = block.dual_quaternion::<L, K, Plain>(&block.work.skin.paired)[0];
+        let q = block.dual_quaternion::<L, K, Pivot>()[0];
         (add(turn_by(q, arm), transform(&m, center)), if NORMALS { turn_by(q, n) } else { n })
     }
 }
@@ -213,28 +208,21 @@ impl Block<'_, '_> {
 
     #[inline(always)]
     fn matrix<L: Lanes<Real = f32>, const K: usize>(&mut self, rows: &[Row]) -> Matrix<L> {
-        let joints = &self.work.skin.joints;
-        self.sum::<L, K, Plain, 12>(rows, joints);
+        self.sum::<L, K, Unsigned, 12>(rows);
         [self.columns(0), self.columns(4), self.columns(8)]
     }
 
     #[inline(always)]
-    fn dual_quaternion<L: Lanes<Real = f32>, const K: usize, S: Signing>(
-        &mut self,
-        joints: &[u32],
-    ) -> [[L; 4]; 2] {
-        self.sum::<L, K, S, 8>(&self.bones.dual, joints);
+    fn dual_quaternion<L: Lanes<Real = f32>, const K: usize, S: Signing>(&mut self) -> [[L; 4]; 2] {
+        self.sum::<L, K, S, 8>(&self.bones.dual);
         [self.columns(0), self.columns(4)]
     }
 
     /// Sums the rows of each vertex, their first `NUMBERS`.
     #[inline(always)]
-    fn sum<L: Lanes<Real = f32>, const K: usize, S: Signing, const NUMBERS: usize>(
-        &mut self,
-        rows: &[Row],
-        joints: &[u32],
-    ) {
+    fn sum<L: Lanes<Real = f32>, const K: usize, S: Signing, const NUMBERS: usize>(&mut self, rows: &[Row]) {
         let skin = self.work.skin;
+        let joints = S::joints(skin);
         let sums = &mut self.sums[..L::WIDTH];
         if K == MANY {
             let count = skin.influence_count;
@@ -305,24 +293,54 @@ fn sum_many<L: Lanes<Real = f32>, S: Signing, const NUMBERS: usize>(
 
 /// How a vertex's weights are signed, influence by influence.
 trait Signing: Default {
+    /// Which rows the influences of all vertices take.
+    fn joints(skin: &Skin) -> &[u32];
+
     fn signed(&mut self, row: &[f32; 16], weight: f32) -> f32;
 }
 
+/// Not at all.
 #[derive(Default)]
-struct Plain;
+struct Unsigned;
 
-/// Remembers the sum so far of the real parts.
+/// In the rows, of which there is one for each pivot and joint.
 #[derive(Default)]
-struct RunningSigns([f32; 4]);
+struct Pivot;
 
-impl Signing for Plain {
+/// By the sum so far of the real parts.
+#[derive(Default)]
+struct Running([f32; 4]);
+
+impl Signing for Unsigned {
+    #[inline(always)]
+    fn joints(skin: &Skin) -> &[u32] {
+        &skin.joints
+    }
+
     #[inline(always)]
     fn signed(&mut self, _row: &[f32; 16], weight: f32) -> f32 {
         weight
     }
 }
 
-impl Signing for RunningSigns {
+impl Signing for Pivot {
+    #[inline(always)]
+    fn joints(skin: &Skin) -> &[u32] {
+        &skin.paired
+    }
+
+    #[inline(always)]
+    fn signed(&mut self, _row: &[f32; 16], weight: f32) -> f32 {
+        weight
+    }
+}
+
+impl Signing for Running {
+    #[inline(always)]
+    fn joints(skin: &Skin) -> &[u32] {
+        &skin.joints
+    }
+
     #[inline(always)]
     fn signed(&mut self, row: &[f32; 16], weight: f32) -> f32 {
         let r = [row[0], row[1], row[2], row[3]];
