@@ -25,65 +25,58 @@ _COLOURS: Final = {
 _HEIGHT: Final = 230
 
 
-def capsule_figures(of: Comparison) -> Iterator[Figure]:
-    """Volume, cross-section, bulge and stretch of the capsule, over the angle of a bend or of a twist."""
-
-    def last(movement: str, column: str) -> tuple[float, ...]:
-        table = of.capsule.take(of.capsule["movement"] == movement)
-        return tuple(float(_column(table, method, column)[-1]) for method in METHODS.values())
-
-    linear, dual, centers = last("bend", "volume")
-    yield _over_angle(
+_CAPSULE: Final = (
+    (
         "bend_volume",
         "Volume in a bend",
-        f"Bent by 150°, linear blending keeps {linear:.1%} of the volume, dual quaternions {dual:.1%}, "
-        f"centres of rotation {centers:.1%}.",
-        of.capsule,
         ("bend", "volume", "Volume over that at rest"),
-    )
-    linear, dual, centers = last("twist", "volume")
-    yield _over_angle(
+        "Bent by 150°, linear blending keeps {:.1%} of the volume, dual quaternions {:.1%}, centres of "
+        "rotation {:.1%}.",
+    ),
+    (
         "twist_volume",
         "Volume in a twist",
-        f"Twisted by 180°, linear blending keeps {linear:.1%} of the volume, dual quaternions {dual:.1%}, "
-        f"centres of rotation {centers:.1%}.",
-        of.capsule,
         ("twist", "volume", "Volume over that at rest"),
-    )
-    linear, dual, centers = last("bend", "bulge")
-    yield _over_angle(
+        "Twisted by 180°, linear blending keeps {:.1%}, dual quaternions {:.1%}, centres of rotation {:.1%}.",
+    ),
+    (
         "bend_bulge",
         "The bulge of a bend",
-        f"What dual quaternions pay: bent by 150° the outside stands {dual:.0%} of the radius farther from "
-        f"the bones than at rest; {linear:.0%} for linear blending, {centers:.0%} about centres of rotation.",
-        of.capsule,
         ("bend", "bulge", "Outermost vertex beyond the radius"),
-    )
-    linear, dual, centers = last("twist", "section_least")
-    yield _over_angle(
+        "Bent by 150° the outside stands farther from the bones than at rest: by {:.0%} of the radius under "
+        "linear blending, {:.0%} under dual quaternions, which pay so for the volume, {:.0%} about centres of "
+        "rotation.",
+    ),
+    (
         "twist_section",
         "The candy wrapper of a twist",
-        f"Twisted by 180° the ring round the joint keeps {linear:.0%} of its radius under linear blending: "
-        f"at 0 it is a point. Dual quaternions keep {dual:.0%}, centres of rotation {centers:.0%}.",
-        of.capsule,
         ("twist", "section_least", "Least radius over that at rest"),
-    )
-    linear, dual, centers = last("bend", "edge")
-    yield _over_angle(
+        "Twisted by 180° the ring round the joint keeps {:.0%} of its radius under linear blending: at 0 it is "
+        "a point. Dual quaternions keep {:.0%}, centres of rotation {:.0%}.",
+    ),
+    (
         "bend_edges",
         "Stretch in a bend",
-        f"Root mean square change of edge lengths, bent by 150°: {linear:.0%}, {dual:.0%} and {centers:.0%}.",
-        of.capsule,
         ("bend", "edge", "Change of edge lengths"),
-    )
-    linear, dual, centers = last("twist", "edge")
-    yield _over_angle(
+        "Root mean square change of edge lengths, bent by 150°: {:.0%}, {:.0%} and {:.0%}.",
+    ),
+    (
         "twist_edges",
         "Stretch in a twist",
-        f"The same, twisted by 180°: {linear:.0%}, {dual:.0%} and {centers:.0%}. A twist must stretch it.",
-        of.capsule,
         ("twist", "edge", "Change of edge lengths"),
-    )
+        "The same, twisted by 180°: {:.0%}, {:.0%} and {:.0%}. A twist must stretch it.",
+    ),
+)
+"""Name, title, what is drawn (movement, column, axis), and a sentence for the values at its end."""
+
+
+def capsule_figures(of: Comparison) -> Iterator[Figure]:
+    """Volume, cross-section, bulge and stretch of the capsule, over the angle of a bend or of a twist."""
+    for name, title, (movement, column, axis), sentence in _CAPSULE:
+        table = of.capsule.take(of.capsule["movement"] == movement)
+        ends = [float(_column(table, method, column)[-1]) for method in METHODS.values()]
+        chart = _lines("capsule", "degrees", "Degrees", column, axis)
+        yield Figure(name, title, sentence.format(*ends), chart, {"capsule": table})
 
 
 def clip_figures(of: Comparison) -> Iterator[Figure]:
@@ -152,13 +145,6 @@ def _apart(of: Comparison) -> Figure:
         },
         data={"apart": table},
     )
-
-
-def _over_angle(name: str, title: str, sentence: str, capsule: Table, drawn: tuple[str, str, str]) -> Figure:
-    movement, column, axis = drawn
-    table = capsule.take(capsule["movement"] == movement)
-    chart = _lines("capsule", "degrees", "Degrees", column, axis)
-    return Figure(name, title, sentence, chart, {"capsule": table})
 
 
 def _over_time(name: str, title: str, sentence: str, table: Table, column: str, axis: str) -> Figure:
