@@ -60,6 +60,13 @@ LARGE: Final = 10_000_000
     show_default=True,
     help="Which way bones are drawn.",
 )
+@click.option(
+    "--opacity",
+    type=click.FloatRange(0.1, 1.0),
+    default=1.0,
+    show_default=True,
+    help="Of skins; below 1 bones are seen in them.",
+)
 @click.option("--overlay", is_flag=True, help="Everything where it is, not side by side.")
 @click.option(
     "--unit", type=Unit(), help="Unit of length of the motions: m, cm, mm, in, ft, cmu, or metres per unit."
@@ -76,6 +83,7 @@ def view(
     weights: str | None,
     hide: tuple[str, ...],
     rule: str,
+    opacity: float,
     overlay: bool,
     unit: float | None,
     positions: str,
@@ -103,7 +111,7 @@ def view(
         raise click.UsageError("--save writes a page and serves nothing; leave out --port and --open")
     from gmr.view.stage import LAYERS, Look
 
-    look = Look(cast(Any, blending), weights, frozenset(LAYERS) - set(hide), overlay)
+    look = Look(cast(Any, blending), weights, frozenset(LAYERS) - set(hide), opacity, overlay)
     reading = {"positions": positions, "asf": asf, "fps": amc_fps, "animation": animation, "strict": strict}
     failures = Failures()
     character = None if skin is None else _character(skin, strict)

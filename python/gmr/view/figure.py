@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -131,12 +132,12 @@ def motion_figure(
         character: a skin for it, where it fits; see :func:`gmr.view.fitting.fitted_poses`.
         rule: how bones are drawn, as :func:`gmr.bones` has it.
         unit: metres per file unit, which goes before what the motion says.
-        name: what to call it; its own name by default.
+        name: what to call it; the name of its file by default.
 
     Raises:
         GmrError: there are no frames, no pose is known, no rule is called so, or the character does not fit.
     """
-    called = name or motion.name or "motion"
+    called = name or Path(motion.name or "motion").name
     if not motion.frame_count:
         raise GmrError(f"{called} has no frames, so there is nothing to show")
     scale, up, notes = _scale_and_up(motion, unit)

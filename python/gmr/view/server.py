@@ -132,7 +132,9 @@ class Live:
         )
         self._time: Any = gui.add_markdown("")
         self._play: Any = gui.add_button("Pause", hint="Play or pause.")
-        steps = gui.add_button_group("Step", ("⏮", "◀", "▶"), hint="To the start, a frame back, a frame on.")
+        steps = gui.add_button_group(
+            "Step", ("Start", "Back", "Next"), hint="To the start, a frame back, a frame on."
+        )
         speed = gui.add_dropdown("Speed", _SPEEDS, initial_value="1")
         loop = gui.add_checkbox("Loop", True)
         self._slider.on_update(
@@ -160,6 +162,14 @@ class Live:
             return
         named = {method: method.upper() if method != "cor" else "CoR" for method in METHODS}
         method = gui.add_dropdown("Blending", tuple(named.values()), initial_value=named[self._look.method])
+        opacity = gui.add_slider(
+            "Opacity", min=0.1, max=1.0, step=0.05, initial_value=self._look.opacity, hint="Of the skin."
+        )
+        opacity.on_update(
+            lambda event: self._asked(
+                event, lambda: self._restyle(replace(self._look, opacity=float(opacity.value)))
+            )
+        )
         joints = dict.fromkeys(
             joint for figure in self._figures if figure.worn for joint in figure.worn.character.joint_names
         )
@@ -191,7 +201,7 @@ class Live:
             self._draw()
 
     def _step(self, way: str) -> None:
-        self._player.go(0 if way == "⏮" else self._player.tick + (1 if way == "▶" else -1))
+        self._player.go(0 if way == "Start" else self._player.tick + (1 if way == "Next" else -1))
 
     def _turn(self, layer: str, on: bool) -> None:
         layers = self._look.layers | {layer} if on else self._look.layers - {layer}

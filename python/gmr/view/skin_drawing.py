@@ -29,8 +29,8 @@ class Drawn(Protocol):
     def draw(self, frame: int) -> None:
         """As it is in a frame; nothing where the pose is not known."""
 
-    def show(self, visible: bool) -> None:
-        """Whether it is seen."""
+    def show(self, visible: bool, opacity: float) -> None:
+        """Whether it is seen, and how much hides behind it."""
 
     def remove(self) -> None:
         """Takes it out of the scene."""
@@ -72,8 +72,12 @@ class _Patched:
         self._visible, self._is_known = True, True
         self._meshes: list[Any] = []
 
-    def show(self, visible: bool) -> None:
+    def show(self, visible: bool, opacity: float) -> None:
         self._visible = visible
+        shade = None if opacity == 1 else opacity
+        for mesh in self._meshes:
+            if mesh.opacity != shade:
+                mesh.opacity = shade
         self._set_visible()
 
     def remove(self) -> None:

@@ -28,7 +28,7 @@ METHODS = ("lbs", "dqbs", "cor")
 LAYERS = ("skeleton", "skin", "trails", "names")
 _TRAIL_RATE = 30.0
 """Points a second of a trail."""
-_TRAIL_WIDTH = 0.004
+_TRAIL_WIDTH = 0.006
 """As a share of the figure's size."""
 _FILL = 2.0
 """Light from everywhere, beside that from above."""
@@ -41,7 +41,7 @@ class Look:
     """What is drawn, and how.
 
     Raises:
-        GmrError: there is no such method or layer.
+        GmrError: there is no such method or layer, or the opacity is out of range.
     """
 
     method: Method = "lbs"
@@ -50,12 +50,16 @@ class Look:
     """A joint whose weights colour the skins; None: the colours of their materials."""
     layers: frozenset[str] = frozenset(LAYERS)
     """Some of "skeleton", "skin", "trails", "names"."""
+    opacity: float = 1.0
+    """Of skins, from 0.1 to 1: below 1 the bones in them are seen."""
     overlay: bool = False
     """Figures stand where they are in their files, not beside each other."""
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
             raise GmrError(f"there is no blending '{self.method}'; take one of {', '.join(METHODS)}")
+        if not 0.1 <= self.opacity <= 1:
+            raise GmrError(f"an opacity of {self.opacity:g} cannot be; give from 0.1 to 1")
         if wrong := sorted(set(self.layers) - set(LAYERS)):
             raise GmrError(f"nothing drawn is called '{wrong[0]}'; there are {', '.join(LAYERS)}")
 
@@ -170,7 +174,7 @@ class _Actor:
             trail.visible = "trails" in layers
         self._name.visible = "names" in layers
         if self._skin is not None:
-            self._skin.show("skin" in layers)
+            self._skin.show("skin" in layers, self._look.opacity)
 
 
 def _body_size(figure: Figure) -> float:
