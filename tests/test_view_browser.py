@@ -213,6 +213,19 @@ def test_the_live_page_plays_pauses_and_steps(
     assert len(said.split("gmr: ")) == 3
 
 
+def test_a_name_does_nothing_but_be_shown(watched: Watched) -> None:
+    nasty = "<img src=x onerror=\"document.title='owned'\">{document.title='owned'}"
+    motion = gmr.read(WALK)[20:21].with_name(nasty)
+    with gmr.view.show(gmr.view.motion_figure(motion, name=nasty), port=0) as live:
+        watched.open(live.address)
+        watched.page.get_by_text(f"{nasty}: its unit is not said").wait_for()
+        assert coloured(watched.settled("one_frame")) > 300
+        assert watched.page.title() != "owned"
+        assert watched.complaints == []
+        assert only_this_machine(watched)
+        watched.page.goto("about:blank")
+
+
 @pytest.mark.parametrize("served", [[DATA / "rigged_simple.gltf"]], indirect=True, ids=["character"])
 def test_the_live_page_blends_and_colours_skins(
     watched: Watched, served: tuple[str, subprocess.Popen[str]]

@@ -115,9 +115,17 @@ def test_what_has_z_up_is_turned(walk: gmr.Motion, figure: Figure) -> None:
     np.testing.assert_allclose(turned.heads[5:], figure.heads[5:], atol=1e-4)
 
 
-def test_sides_follow_the_names_of_the_tails(figure: Figure) -> None:
+def test_sides_follow_the_names_of_the_tails(walk: gmr.Motion, figure: Figure) -> None:
     assert set(figure.sides) == {"left", "right", ""}
     assert figure.sides.count("left") == figure.sides.count("right")
+    places = walk.positions(dtype=np.float64)[5] * 0.0254 / 0.45
+    told = 0
+    for tail, side in zip(figure.tails[5], figure.sides, strict=True):
+        at = np.linalg.norm(places - tail, axis=1) < 1e-5
+        names = [name for name, here in zip(walk.skeleton.names, at, strict=True) if here]
+        told += bool(names)
+        assert not names or any(name.startswith(side.capitalize()) for name in names)
+    assert told > 20, "but for bones without length, which have a tail of their own"
 
 
 def test_trails_are_the_ways_of_root_and_hands(walk: gmr.Motion, figure: Figure) -> None:

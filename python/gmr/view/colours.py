@@ -12,9 +12,9 @@ Colour = tuple[int, int, int]
 _FIGURES: tuple[Colour, ...] = (
     (86, 132, 190), (214, 126, 44), (64, 152, 116), (178, 92, 150), (150, 140, 60), (110, 110, 190),
 )  # fmt: skip
-_LEFT: Colour = (224, 138, 48)
-_RIGHT: Colour = (46, 150, 130)
-_TOWARDS = 0.65
+_LEFT: Colour = (226, 124, 24)
+_RIGHT: Colour = (16, 138, 112)
+_TOWARDS = 0.85
 """How far the colour of a side goes from that of the figure."""
 SKIN: Colour = (205, 196, 184)
 """A skin whose material says nothing."""

@@ -279,13 +279,13 @@ def _ends(skeleton: Skeleton, rule: str, joints: NDArray[np.int32]) -> Sequence[
     taken = dict.fromkeys(range(skeleton.joint_count), 0)
     found = []
     for joint in joints.tolist():
-        children = [child for child in skeleton.children[joint] if side_matters(skeleton, child)]
+        children = [child for child in skeleton.children[joint] if _has_bone(skeleton, child)]
         found.append(children[taken[joint]] if taken[joint] < len(children) else joint)
         taken[joint] += 1
     return found
 
 
-def side_matters(skeleton: Skeleton, child: int) -> bool:
+def _has_bone(skeleton: Skeleton, child: int) -> bool:
     """Whether ``per_child`` draws a bone to this child: tips have none."""
     from gmr.skeleton import End
 

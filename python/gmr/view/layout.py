@@ -24,7 +24,7 @@ _EYE = np.array([0.5, 0.3, 1.0])
 """From what is looked at to the eye, where things spread along X: across, and a little from above."""
 _FIELD = np.deg2rad(45.0)
 _ASPECT = 1.3
-_FILLED = 0.9
+_FILLED = 0.98
 """Share of the screen that everything fills."""
 _HEADROOM = 0.1
 """For names, as a share of the height."""

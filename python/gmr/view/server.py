@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import threading
 import time
 import webbrowser
@@ -145,9 +146,11 @@ class Live:
         speed.on_update(lambda event: self._asked(event, lambda: self._player.run_at(float(speed.value))))
         loop.on_update(lambda event: self._asked(event, lambda: self._player.loop(bool(loop.value))))
         self._add_look(gui)
-        notes = [f"- **{figure.name}**: {note}" for figure in self._figures for note in figure.notes]
+        notes = [f"{figure.name}: {note}" for figure in self._figures for note in figure.notes]
         if notes:
-            gui.add_markdown("\n".join(notes))
+            # Markdown would run what a file's name says.
+            items = "".join(f"<li>{html.escape(note)}</li>" for note in notes)
+            gui.add_html(f'<ul style="margin: 0.5em; padding-left: 1.2em; font-size: 0.85em">{items}</ul>')
 
     def _add_look(self, gui: Any) -> None:
         has_skin = any(figure.worn is not None for figure in self._figures)

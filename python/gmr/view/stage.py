@@ -30,7 +30,7 @@ _TRAIL_RATE = 30.0
 """Points a second of a trail."""
 _TRAIL_WIDTH = 0.006
 """As a share of the figure's size."""
-_FILL = 2.0
+_FILL = 1.3
 """Light from everywhere, beside that from above."""
 _ABOVE = 0.06
 """How far above a figure its name is, as a share of its height."""
