@@ -24,7 +24,7 @@ LARGE: Final = 10_000_000
 @click.command(short_help="Look at motions and characters in a browser.")
 @click.argument("files", metavar="FILE...", nargs=-1, required=True)
 @click.option(
-    "--character", "skin", metavar="GLB", type=click.Path(), help="A skin for the motions that fit it."
+    "--character", "skin", metavar="GLB", type=click.Path(), help="A skin for the motions, which drive it."
 )
 @click.option(
     "--save",
@@ -103,6 +103,7 @@ def view(
       gmr view walk.bvh --open
       gmr view before.bvh after.bvh --overlay       two versions of one take in one place
       gmr view figure.glb --blending dqbs
+      gmr view walk.bvh --character figure.glb
       gmr view walk.bvh --save walk.html            to send to somebody
     """
     if page is None and fps is not None:

@@ -16,7 +16,9 @@ from gmr.body.naming import HANDS, side_and_part
 from gmr.bone_tails import bones
 from gmr.errors import GmrError
 from gmr.guesses import guess_body
+from gmr.skinning.driving import drive
 from gmr.tpose import leading_rest_frames
+from gmr.view.fitting import fitted_poses, misfit
 
 if TYPE_CHECKING:
     from gmr.motion import Motion
@@ -129,18 +131,27 @@ def motion_figure(
 
     Args:
         motion: at least one frame.
-        character: a skin for it, where it fits; see :func:`gmr.view.fitting.fitted_poses`.
+        character: a skin for it. Where the motion is of the character's own skeleton, it is put over that;
+            else the motion drives the character (:func:`gmr.skinning.drive`), whose own bones are drawn then.
         rule: how bones are drawn, as :func:`gmr.bones` has it.
         unit: metres per file unit, which goes before what the motion says.
         name: what to call it; the name of its file by default.
 
     Raises:
-        GmrError: there are no frames, no pose is known, no rule is called so, or the character does not fit.
+        GmrError: there are no frames, no pose is known, no rule is called so, or the motion cannot
+            drive the character.
     """
     called = name or Path(motion.name or "motion").name
     if not motion.frame_count:
         raise GmrError(f"{called} has no frames, so there is nothing to show")
     scale, up, notes = _scale_and_up(motion, unit)
+    if character is not None and misfit(character, motion, scale, up) is not None:
+        driven = drive(motion.with_unit(scale), character)
+        figure = posed_figure(character, driven.poses, driven.frame_time, rule=rule, name=called)
+        follow = (
+            f"{len(driven.report.follows)} of {len(character.joints)} joints of '{character.name}' follow it"
+        )
+        return replace(figure, notes=(*notes, follow, *figure.notes))
     home = motion.skeleton.home or motion.skeleton
     segments = bones(motion, rule, slice(None))
     wanted = _trailed(home)
@@ -164,8 +175,6 @@ def motion_figure(
         ),
     )
     if character is not None:
-        from gmr.view.fitting import fitted_poses
-
         figure = replace(figure, worn=Worn(character, fitted_poses(character, motion, scale, up)))
     return replace(figure, notes=(*figure.notes, *_unknown(figure)))
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from gmr.motion import Motion
     from gmr.skinning.character import Character
 
-__all__ = ["fitted_poses"]
+__all__ = ["fitted_poses", "misfit"]
 
 _SHOWN = 6
 _APART = 0.01
@@ -38,25 +38,12 @@ def fitted_poses(character: Character, motion: Motion, scale: float, up: str = "
     Raises:
         GmrError: it lacks a joint, or its offsets are others: it is of another skeleton.
     """
-    names = character.joint_names
+    reason = misfit(character, motion, scale, up)
+    if reason is not None:
+        raise GmrError(f"{motion.name or 'the motion'} is not of character '{character.name}': {reason}")
     home = motion.skeleton.home or motion.skeleton
-    called = motion.name or "the motion"
-    missing = [name for name in names if name not in home.names]
-    if missing:
-        raise GmrError(
-            f"{called} does not fit character '{character.name}': it has no joint {quoted(missing, _SHOWN)}"
-        )
+    names = character.joint_names
     chosen = [home.names.index(name) for name in names]
-    rest = character.skeleton.offsets
-    offsets = turned_upright(home.offsets[chosen], up) * scale
-    below = character.joint_parents >= 0
-    apart = np.abs(offsets - rest).max(axis=1) > _APART * np.abs(rest).max(initial=0.0)
-    if (apart & below).any():
-        joint = int(np.flatnonzero(apart & below)[0])
-        raise GmrError(
-            f"{called} does not fit character '{character.name}': joint '{names[joint]}' is at "
-            f"{_told(offsets[joint])} m from its parent, in the character at {_told(rest[joint])} m"
-        )
     world = quaternions.matrices(motion.joint_rotations(dtype=np.float64)[:, chosen])
     turn = quaternions.matrices(np.array(UP_TURNS[up]))
     matrices = np.zeros((motion.frame_count, len(names), 4, 4))
@@ -64,6 +51,27 @@ def fitted_poses(character: Character, motion: Motion, scale: float, up: str = "
     matrices[..., :3, 3] = turned_upright(motion.positions(joints=chosen, dtype=np.float64), up) * scale
     matrices[..., 3, 3] = 1.0
     return matrices
+
+
+def misfit(character: Character, motion: Motion, scale: float, up: str = "+Y") -> str | None:
+    """Why a motion's skeleton is another than the character's, as the rest of a sentence; None where it is
+    the same. Arguments as of :func:`fitted_poses`."""
+    names = character.joint_names
+    home = motion.skeleton.home or motion.skeleton
+    missing = [name for name in names if name not in home.names]
+    if missing:
+        return f"it has no joint {quoted(missing, _SHOWN)}"
+    rest = character.skeleton.offsets
+    offsets = turned_upright(home.offsets[[home.names.index(name) for name in names]], up) * scale
+    apart = np.abs(offsets - rest).max(axis=1) > _APART * np.abs(rest).max(initial=0.0)
+    elsewhere = np.flatnonzero(apart & (character.joint_parents >= 0))
+    if not len(elsewhere):
+        return None
+    joint = int(elsewhere[0])
+    return (
+        f"joint '{names[joint]}' is at {_told(offsets[joint])} m from its parent, "
+        f"in the character at {_told(rest[joint])} m"
+    )
 
 
 def _told(vector: NDArray[np.float64]) -> str:
