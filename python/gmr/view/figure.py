@@ -16,7 +16,7 @@ from gmr.body.naming import HANDS, side_and_part
 from gmr.bone_tails import bones
 from gmr.errors import GmrError
 from gmr.guesses import guess_body
-from gmr.skinning.driving import drive
+from gmr.skinning import drive
 from gmr.tpose import leading_rest_frames
 from gmr.view.fitting import fitted_poses, misfit
 
