@@ -6,7 +6,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from gmr import editing, evaluation, markers, matching, skinning
+    from gmr import editing, evaluation, markers, matching, skinning, view
     from gmr._core import __version__
     from gmr.bone_tails import Bones, bones
     from gmr.channels import ChannelLayout
@@ -60,6 +60,7 @@ __all__ = [
     "read_folder",
     "read_markers",
     "skinning",
+    "view",
     "write",
     "write_character",
 ]
@@ -94,7 +95,7 @@ _HOMES = {
     "write": "gmr.formats",
     "write_character": "gmr.formats",
 }
-_MODULES = frozenset({"editing", "evaluation", "markers", "matching", "skinning"})
+_MODULES = frozenset({"editing", "evaluation", "markers", "matching", "skinning", "view"})
 
 
 def __getattr__(name: str) -> "Any":
