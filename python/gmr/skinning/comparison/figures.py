@@ -44,15 +44,15 @@ _CAPSULE: Final = (
         "The bulge of a bend",
         ("bend", "bulge", "Outermost vertex beyond the radius"),
         "Bent by 150° the outside stands farther from the bones than at rest: by {:.0%} of the radius under "
-        "linear blending, {:.0%} under dual quaternions, which pay so for the volume, {:.0%} about centres of "
-        "rotation.",
+        "linear blending, {:.0%} under dual quaternions, which pay so for the volume, {:.0%} about "
+        "centres of rotation.",
     ),
     (
         "twist_section",
         "The candy wrapper of a twist",
         ("twist", "section_least", "Least radius over that at rest"),
-        "Twisted by 180° the ring round the joint keeps {:.0%} of its radius under linear blending: at 0 it is "
-        "a point. Dual quaternions keep {:.0%}, centres of rotation {:.0%}.",
+        "Twisted by 180° the ring round the joint keeps {:.0%} of its radius under linear blending: at 0 it "
+        "is a point. Dual quaternions keep {:.0%}, centres of rotation {:.0%}.",
     ),
     (
         "bend_edges",
