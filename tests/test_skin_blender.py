@@ -28,7 +28,7 @@ def test_vertices_are_blenders_to_a_millionth_of_the_extent(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", gmr.FormatWarning)
         character = gmr.read_character(file)
-    record = json.loads((DATA / "blender" / f"skin_{file.stem}.json").read_text(encoding="utf-8"))
+    record = json.loads((DATA / "blender" / "skin" / f"{file.stem}.json").read_text(encoding="utf-8"))
     found = character.skin(record["poses"], method, hemisphere="running")[:, :: record["step"]]
     blenders = np.array(record[recorded])
     extent = np.ptp(found.reshape(-1, 3), axis=0).max()

@@ -2,10 +2,10 @@
 
 Run by hand, with Blender 3.4 or newer on the path, whenever a character is added:
 
-    PYTHONPATH=tests python tests/oracles/record_blender_skinning.py CHARACTER... tests/data/blender
+    PYTHONPATH=tests python tests/oracles/record_blender_skinning.py CHARACTER... tests/data/blender/skin
 
 Each joint is turned against its parent by a random angle of up to 179 degrees. For each character it writes
-skin_NAME.json: the poses, and about 200 of the vertices with Blender's Armature modifier without (linear) and
+NAME.json: the poses, and about 200 of the vertices with Blender's Armature modifier without (linear) and
 with Preserve Volume (dual quaternions), in the axes of the file.
 """
 
@@ -65,7 +65,7 @@ def main(*arguments):
                 for method in ("linear", "volume")
             }
         record = {"file": file.name, "step": step, "poses": poses.tolist(), **found}
-        (folder / f"skin_{file.stem}.json").write_text(json.dumps(record) + "\n", encoding="utf-8")
+        (folder / f"{file.stem}.json").write_text(json.dumps(record) + "\n", encoding="utf-8")
 
 
 main(*sys.argv[1:])

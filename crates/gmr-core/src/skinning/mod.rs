@@ -18,6 +18,21 @@
 //!
 //! [`bind`] finds which joints a mesh should follow.
 //!
+//! ```
+//! use gmr_core::skinning::{Blend, Blended, Hemisphere, Method, Skin, blend};
+//!
+//! // One vertex beside the joint of two bones, the second twisted by a quarter turn about y.
+//! let skin = Skin::new(&[1.0, 0.0, 0.0], None, &[0, 1], &[0.5, 0.5], 2).unwrap();
+//! let mut transforms = glam::DMat4::IDENTITY.to_cols_array().repeat(2);
+//! transforms[16..].copy_from_slice(&glam::DMat4::from_rotation_y(std::f64::consts::FRAC_PI_2).transpose().to_cols_array());
+//! let mut positions = [0.0; 3];
+//! let method = Method::DualQuaternion(Hemisphere::Pivot);
+//! let job = Blend { skin: &skin, transforms: &transforms, frame_count: 1, method, threads: 1 };
+//! blend(&job, Blended { positions: &mut positions, normals: None }).unwrap();
+//! let half = std::f32::consts::FRAC_1_SQRT_2; // an eighth turn, at the same distance from the axis
+//! assert!((positions[0] - half).abs() < 1e-6 && (positions[2] + half).abs() < 1e-6);
+//! ```
+//!
 //! Sources: Kavan et al. 2007, "Skinning with Dual Quaternions"; Le and Hodgins 2016, "Real-time Skeletal Skinning
 //! with Optimized Centers of Rotation".
 
