@@ -1,4 +1,4 @@
-"""The comparison in a real browser: nothing is loaded, nothing complains, every chart and picture is drawn."""
+"""The comparison in a real browser: nothing is loaded, nothing complains, every chart and picture appears."""
 
 from __future__ import annotations
 
