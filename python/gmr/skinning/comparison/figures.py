@@ -14,7 +14,11 @@ from gmr.table import Table
 __all__ = ["capsule_figures", "clip_figures"]
 
 _LINEAR, _DUAL, _CENTERS = METHODS.values()
-_LEGEND: Final = {"symbolType": "stroke", "symbolStrokeWidth": 3}
+_LEGEND: Final = {
+    "symbolType": "stroke",
+    "symbolStrokeWidth": 3,
+    "columns": {"expr": "windowSize()[0] < 600 ? 2 : 3"},
+}
 _COLOURS: Final = {
     "field": "method",
     "type": "nominal",
