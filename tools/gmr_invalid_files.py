@@ -159,7 +159,7 @@ def broken_binary(arm: bytes) -> dict[str, tuple[bytes, str]]:
         "header_of_2_60": ((1 << 60).to_bytes(8, "little") + arm[8:], "claims 1,152,921,504,606,846,976"),
         "no_json": (arm[:9] + b"'" + arm[10:], "the header is no JSON"),
         "no_utf8": (arm[:30] + b"\xff" + arm[31:], "the header is no UTF-8 at its byte 22"),
-        "array_twice": (arm[:8] + twice + b" " * (length - len(twice)) + data, "'slots' stands in it twice"),
+        "array_twice": (arm[:8] + twice + b" " * (length - len(twice)) + data, "'slots' stands twice"),
         "another_kind": (metadata(format="pt"), "this safetensors file holds no motion"),
         "another_version": (metadata(version="2"), "the version is '2', but this gmr reads 1"),
         "frame_time": (metadata(frame_time="nan"), "frame_time in the metadata is 'nan'"),

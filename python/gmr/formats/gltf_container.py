@@ -9,7 +9,7 @@ import json
 from typing import Any, Final, NamedTuple, NoReturn
 
 from gmr.errors import FormatError
-from gmr.formats.text import named
+from gmr.formats.strict_json import no_constant, unique_object
 
 __all__ = ["Chunks", "split_chunks"]
 
@@ -75,7 +75,10 @@ def _parsed(text: bytes, file: str | None) -> dict[str, Any]:
 
     try:
         found = json.loads(
-            text.decode("utf-8-sig"), object_pairs_hook=_object, parse_constant=_no_constant, parse_int=_whole
+            text.decode("utf-8-sig"),
+            object_pairs_hook=unique_object,
+            parse_constant=no_constant,
+            parse_int=_whole,
         )
     except UnicodeDecodeError as error:
         wrong(f"the JSON is no UTF-8 at its byte {error.start}; copy the file again, or export it again")
@@ -85,20 +88,6 @@ def _parsed(text: bytes, file: str | None) -> dict[str, Any]:
     if not isinstance(found, dict):
         wrong("the JSON is no object; a glTF file is one. Export it again")
     return found
-
-
-def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A JSON object, none of whose names stands twice."""
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        seen: set[str] = set()
-        twice = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
-        raise ValueError(f"{named(twice)} stands twice in an object")
-    return found
-
-
-def _no_constant(word: str) -> NoReturn:
-    raise ValueError(f"{word} is no number")
 
 
 def _whole(text: str) -> int | float:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.errors import FormatError
+from gmr.formats.strict_json import no_constant, unique_object
 from gmr.formats.text import named
 from gmr.listing import quoted
 
@@ -104,8 +105,8 @@ def read_container(data: bytes | memoryview, name: str | None) -> Container:
     try:
         header = json.loads(
             bytes(data[8 : 8 + length]).decode(),
-            object_pairs_hook=_object,
-            parse_constant=_no_constant,
+            object_pairs_hook=unique_object,
+            parse_constant=no_constant,
         )
     except UnicodeDecodeError as error:
         wrong(f"the header is no UTF-8 at its byte {error.start}. The file is damaged: copy it again.")
@@ -162,20 +163,6 @@ def _pieces(header: bytes, arrays: list[NDArray[Any]]) -> Iterator[bytes | memor
         for start in range(0, len(flat), step):
             piece = np.ascontiguousarray(flat[start : start + step], array.dtype.newbyteorder("<"))
             yield piece.view(np.uint8).data
-
-
-def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A JSON object, none of whose names stands twice."""
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        seen: set[str] = set()
-        twice = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
-        raise ValueError(f"{named(twice)} stands in it twice")
-    return found
-
-
-def _no_constant(word: str) -> NoReturn:
-    raise ValueError(f"{word} is no number")
 
 
 def _is_tensor(entry: Any) -> bool:

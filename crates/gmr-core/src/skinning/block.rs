@@ -296,7 +296,11 @@ trait Signing: Default {
     /// Which rows the influences of all vertices take.
     fn joints(skin: &Skin) -> &[u32];
 
-    fn signed(&mut self, row: &[f32; 16], weight: f32) -> f32;
+    /// The weight, with the sign that the row is to have.
+    #[inline(always)]
+    fn signed(&mut self, _row: &[f32; 16], weight: f32) -> f32 {
+        weight
+    }
 }
 
 /// Not at all.
@@ -316,22 +320,12 @@ impl Signing for Unsigned {
     fn joints(skin: &Skin) -> &[u32] {
         &skin.joints
     }
-
-    #[inline(always)]
-    fn signed(&mut self, _row: &[f32; 16], weight: f32) -> f32 {
-        weight
-    }
 }
 
 impl Signing for Pivot {
     #[inline(always)]
     fn joints(skin: &Skin) -> &[u32] {
         &skin.paired
-    }
-
-    #[inline(always)]
-    fn signed(&mut self, _row: &[f32; 16], weight: f32) -> f32 {
-        weight
     }
 }
 
