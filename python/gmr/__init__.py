@@ -6,12 +6,13 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from gmr import editing, evaluation, markers, matching, skinning, view
+    from gmr import actionlets, editing, evaluation, markers, matching, skinning, view
     from gmr._core import __version__
     from gmr.bone_tails import Bones, bones
     from gmr.channels import ChannelLayout
     from gmr.concatenation import concatenate
     from gmr.errors import (
+        ActionletError,
         DatasetError,
         FormatError,
         FormatWarning,
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from gmr.skinning.character import Character
 
 __all__ = [
+    "ActionletError",
     "Bones",
     "ChannelLayout",
     "Character",
@@ -47,6 +49,7 @@ __all__ = [
     "SkinError",
     "SkinWarning",
     "__version__",
+    "actionlets",
     "bones",
     "concatenate",
     "editing",
@@ -68,6 +71,7 @@ __all__ = [
 # All is imported when first used: `gmr --help` answers at once, and an instruction set that this machine has
 # not (GMR_ISA) is the command line's to explain.
 _HOMES = {
+    "ActionletError": "gmr.errors",
     "Bones": "gmr.bone_tails",
     "ChannelLayout": "gmr.channels",
     "Character": "gmr.skinning.character",
@@ -95,7 +99,7 @@ _HOMES = {
     "write": "gmr.formats",
     "write_character": "gmr.formats",
 }
-_MODULES = frozenset({"editing", "evaluation", "markers", "matching", "skinning", "view"})
+_MODULES = frozenset({"actionlets", "editing", "evaluation", "markers", "matching", "skinning", "view"})
 
 
 def __getattr__(name: str) -> "Any":

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 __all__ = [
+    "ActionletError",
     "DatasetError",
     "FormatError",
     "FormatWarning",
@@ -63,6 +64,10 @@ class SkinError(GmrError, ValueError):
 
 class SkinWarning(UserWarning):
     """A mesh and a skeleton that fit each other oddly; says how, and what to do."""
+
+
+class ActionletError(GmrError, ValueError):
+    """An actionlet, a track, a score or an operation on them that cannot be, and what would mend it."""
 
 
 class DatasetError(GmrError, ValueError):

@@ -1,0 +1,40 @@
+"""Actionlets: human motion put together from single cycles of acceleration and deceleration, and taken apart
+into them.
+
+Source: Zheng, Li, Ogunbona, Dong, Kharitonenko, "Human Motion Simulation and Action Corpus", 2007.
+"""
+
+# Each name is imported when it is first used: who asks for an actionlet need not wait for the library.
+TYPE_CHECKING = False
+
+if TYPE_CHECKING:
+    from typing import Any
+
+    from gmr.actionlets.actionlet import Actionlet
+    from gmr.actionlets.measured import Measured
+    from gmr.actionlets.score import Score
+    from gmr.actionlets.track import Piece, Track
+
+__all__ = ["Actionlet", "Measured", "Piece", "Score", "Track"]
+
+_HOMES = {
+    "Actionlet": "gmr.actionlets.actionlet",
+    "Measured": "gmr.actionlets.measured",
+    "Piece": "gmr.actionlets.track",
+    "Score": "gmr.actionlets.score",
+    "Track": "gmr.actionlets.track",
+}
+
+
+def __getattr__(name: str) -> "Any":
+    from importlib import import_module
+
+    if name not in _HOMES:
+        raise AttributeError(f"module 'gmr.actionlets' has no attribute '{name}'")
+    found = getattr(import_module(_HOMES[name]), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
