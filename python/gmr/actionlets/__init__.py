@@ -10,25 +10,33 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from gmr.actionlets import posing
     from gmr.actionlets.actionlet import Actionlet
+    from gmr.actionlets.body import Body
+    from gmr.actionlets.dofs import Dof
     from gmr.actionlets.measured import Measured
     from gmr.actionlets.score import Score
     from gmr.actionlets.track import Piece, Track
 
-__all__ = ["Actionlet", "Measured", "Piece", "Score", "Track"]
+__all__ = ["Actionlet", "Body", "Dof", "Measured", "Piece", "Score", "Track", "posing"]
 
 _HOMES = {
     "Actionlet": "gmr.actionlets.actionlet",
+    "Body": "gmr.actionlets.body",
+    "Dof": "gmr.actionlets.dofs",
     "Measured": "gmr.actionlets.measured",
     "Piece": "gmr.actionlets.track",
     "Score": "gmr.actionlets.score",
     "Track": "gmr.actionlets.track",
 }
+_MODULES = frozenset({"posing"})
 
 
 def __getattr__(name: str) -> "Any":
     from importlib import import_module
 
+    if name in _MODULES:
+        return import_module(f"gmr.actionlets.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module 'gmr.actionlets' has no attribute '{name}'")
     found = getattr(import_module(_HOMES[name]), name)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,19 +20,16 @@ from gmr.actionlets.dofs import DETAILED, PAPER, Dof
 from gmr.actionlets.proportions import Foot, Segment, sizes
 from gmr.arrays import read_only
 from gmr.channels import ChannelLayout
-from gmr.errors import SkeletonError
+from gmr.errors import ActionletError
 from gmr.listing import quoted
 from gmr.skeleton import Skeleton
-
-if TYPE_CHECKING:
-    from gmr.motion import Motion
 
 __all__ = ["Body", "Dof", "Foot", "Segment"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Body:
-    """A body of some height and build; make one with :meth:`of` or :meth:`like`.
+    """A body of some height and build; make one with :meth:`of`.
 
     Args:
         name: ``"paper"`` (22 degrees of freedom) or ``"detailed"`` (40).
@@ -72,7 +69,7 @@ class Body:
             detailed: with wrists, ankles and root (40 degrees of freedom), else the paper's 22.
 
         Raises:
-            GmrError: a height, sex or percentile out of bounds, or both height and percentile.
+            ActionletError: a height, sex or percentile out of bounds, or both height and percentile.
         """
         size = sizes(height, sex, percentile)
         return cls(
@@ -85,13 +82,6 @@ class Body:
             size.foot,
             size.segments,
         )
-
-    @classmethod
-    def like(cls, measured: Motion | Skeleton, sex: str = "average", detailed: bool = True) -> Body:
-        """A body with the segment lengths of a measured skeleton; see :func:`gmr.actionlets.likeness.like`."""
-        from gmr.actionlets.likeness import like
-
-        return like(measured, sex, detailed)
 
     @property
     def dof_count(self) -> int:
@@ -112,7 +102,7 @@ class Body:
         """A degree of freedom by its name.
 
         Raises:
-            SkeletonError: there is none of that name; the message offers the nearest.
+            ActionletError: there is none of that name; the message offers the nearest.
         """
         return self.dofs[self.column(name)]
 
@@ -124,7 +114,7 @@ class Body:
 
         near = difflib.get_close_matches(name, self.names, n=3)
         hint = f"did you mean {quoted(near, 3)}?" if near else f"there are {quoted(self.names, 40)}."
-        raise SkeletonError(f"the {self.name} body has no degree of freedom '{name}'; {hint}")
+        raise ActionletError(f"the {self.name} body has no degree of freedom '{name}'; {hint}")
 
     @cached_property
     def low(self) -> NDArray[np.float64]:
@@ -149,9 +139,7 @@ class Body:
     def hip_height(self) -> float:
         """Height of the pelvis above the ground in the standing posture, metres."""
         names = self.skeleton.names
-        leg = [
-            self.skeleton.offsets[names.index(f"left_{joint}"), 1] for joint in ("hip", "knee", "ankle")
-        ]
+        leg = [self.skeleton.offsets[names.index(f"left_{joint}"), 1] for joint in ("hip", "knee", "ankle")]
         return float(self.foot.ankle_height - np.sum(leg))
 
     @cached_property
@@ -179,7 +167,7 @@ class Body:
             what: what they are of, for the message.
 
         Raises:
-            GmrError: names joint, degree of freedom, value and range, in degrees.
+            ActionletError: names joint, degree of freedom, value and range, in degrees.
         """
         from gmr.actionlets.ranges import check
 

@@ -1,8 +1,8 @@
 """Angles of a body become rotations and a motion.
 
 The frame of a joint is turned by ``R = R_1 R_2 R_3``, its degrees of freedom in their order
-(:mod:`gmr.actionlets.dofs`). The pelvis is turned by ``R_y(heading) R_tilt R_obliquity R_rotation`` and stands
-at ``root + R_y(heading) (sway, heave, surge)``.
+(:mod:`gmr.actionlets.dofs`). The pelvis is turned by ``R_y(heading) R_tilt R_obliquity R_rotation`` and
+stands at ``root + R_y(heading) (sway, heave, surge)``.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from gmr import _core
 from gmr.actionlets.dofs import Dof
 from gmr.arrays import read_only
-from gmr.errors import GmrError
+from gmr.errors import ActionletError
 from gmr.motion import Motion
 from gmr.quaternions import about, multiply, rotated
 
@@ -42,7 +42,7 @@ def rotations(body: Body, angles: ArrayLike) -> Floats:
         (F, S, 4) xyzw, one for each slot of ``body.skeleton``: the joints proper in file order.
 
     Raises:
-        GmrError: the angles have another shape.
+        ActionletError: the angles have another shape.
     """
     values = _checked(body, angles)
     columns, axes, signs = turning(body.dofs, tuple(_proper(body)))
@@ -75,7 +75,7 @@ def motion(
         F frames in metres, in post-rotation form, which BVH, GMR and glTF write.
 
     Raises:
-        GmrError: a shape does not fit.
+        ActionletError: a shape does not fit.
     """
     values = _checked(body, angles)
     count = len(values)
@@ -84,8 +84,8 @@ def motion(
     turns = rotations(body, values)
     upright = about(_UP, facing)
     turns[:, 0] = multiply(upright, turns[:, 0])
-    moves = [body.columns.get(f"root.{part}") for part in ("sway", "heave", "surge")]
-    if None not in moves:
+    if "root.sway" in body.columns:
+        moves = body.subset(f"root.{part}" for part in ("sway", "heave", "surge"))
         path = path + rotated(upright, values[:, moves])
     return Motion.from_pose(
         body.skeleton,
@@ -106,10 +106,10 @@ def centre_of_mass(body: Body, moving: Motion) -> Floats:
         moving: made by :func:`motion` of this body.
 
     Raises:
-        GmrError: the motion is of another skeleton.
+        ActionletError: the motion is of another skeleton.
     """
     if moving.skeleton.names != body.skeleton.names:
-        raise GmrError("this motion is not of that body's skeleton; make it with posing.motion")
+        raise ActionletError("this motion is not of that body's skeleton; make it with posing.motion")
     joints = [body.skeleton.names.index(segment.joint) for segment in body.segments]
     places = moving.positions(dtype=np.float64, joints=joints)
     frames = np.asarray(moving.joint_rotations(dtype=np.float64), np.float64)[:, joints]
@@ -147,7 +147,7 @@ def _proper(body: Body) -> list[str]:
 def _checked(body: Body, angles: ArrayLike) -> Floats:
     values = np.asarray(angles, np.float64)
     if values.ndim != 2 or values.shape[1] != body.dof_count:
-        raise GmrError(
+        raise ActionletError(
             f"angles have the shape {values.shape}; the {body.name} body needs (frames, {body.dof_count}), a "
             "column for each of body.dofs"
         )
@@ -160,4 +160,4 @@ def _frames(values: ArrayLike, shape: tuple[int, ...], what: str) -> Floats:
     try:
         return np.broadcast_to(found, shape)
     except ValueError:
-        raise GmrError(f"{what} has the shape {found.shape}; these angles need {shape}") from None
+        raise ActionletError(f"{what} has the shape {found.shape}; these angles need {shape}") from None

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.actionlets.dofs import SIDES, body_data
-from gmr.errors import GmrError
+from gmr.errors import ActionletError
 from gmr.skeleton import End, Skeleton
 
 __all__ = ["Foot", "Lengths", "Segment", "Sizes", "segments_of", "sizes", "skeleton_of", "stature_of"]
@@ -121,9 +121,7 @@ class Lengths:
     def foot(self) -> Foot:
         """The foot that these lengths make."""
         down = -self.ankle_height
-        return Foot(
-            self.ankle_height, (0.0, down, -self.heel), (0.0, down, self.ball), (0.0, down, self.toe)
-        )
+        return Foot(self.ankle_height, (0.0, down, -self.heel), (0.0, down, self.ball), (0.0, down, self.toe))
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,21 +139,21 @@ class Sizes:
 def sizes(height: float | None, sex: str, percentile: float | None) -> Sizes:
     """The sizes of a body of a stature, or of a percentile of it; see :meth:`gmr.actionlets.Body.of`."""
     if sex not in _SEXES:
-        raise GmrError(f"sex={sex!r}: give one of {', '.join(_SEXES)}")
+        raise ActionletError(f"sex={sex!r}: give one of {', '.join(_SEXES)}")
     mean, spread = _mixed(sex, lambda entry: np.array(entry["stature"]))
     stature = NormalDist(float(mean), float(spread))
     if percentile is not None:
         if height is not None:
-            raise GmrError(
+            raise ActionletError(
                 f"height={height} and percentile={percentile}: give one of them, for the other follows"
             )
         if not 0 < percentile < 100:
-            raise GmrError(f"percentile={percentile}: give more than 0 and less than 100")
+            raise ActionletError(f"percentile={percentile}: give more than 0 and less than 100")
         height = stature.inv_cdf(percentile / 100)
     height = _DEFAULT if height is None else float(height)
     low, high = body_data("proportions.toml")["limits"]["height"]
     if not (math.isfinite(height) and low <= height <= high):
-        raise GmrError(
+        raise ActionletError(
             f"height={height:g} m: the proportions are those of adults; give {low} to {high} metres, or take "
             "a measured skeleton, Body.like(motion)"
         )
@@ -250,7 +248,7 @@ def segments_of(lengths: Lengths, sex: str) -> tuple[Segment, ...]:
     }
     found = []
     for part in (*ways, "ankle"):
-        mass, share = _mixed(sex, lambda entry, part=part: np.array(entry["segments"][part]))  # type: ignore[misc]
+        mass, share = _mixed(sex, lambda entry, part=part: np.array(entry["segments"][part]))
         if part == "ankle":
             length = lengths.heel + lengths.toe
             centre = (0.0, -lengths.ankle_height / 2, float(share) * length - lengths.heel)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gmr.errors import GmrError
+from gmr.errors import ActionletError
 
 if TYPE_CHECKING:
     from gmr.actionlets.body import Body
@@ -28,23 +28,22 @@ def check(body: Body, angles: ArrayLike | Any, times: ArrayLike | None = None, w
         return
     values = np.atleast_2d(np.asarray(angles, np.float64))
     if values.ndim != 2 or values.shape[1] != body.dof_count:
-        raise GmrError(
+        raise ActionletError(
             f"angles have the shape {np.shape(angles)}; the {body.name} body needs "
             f"(frames, {body.dof_count}), a column for each degree of freedom"
         )
-    wrong = np.argwhere(~outside(body, values, inverted=True))
+    wrong = np.argwhere(outside(body, values))
     if not len(wrong):
         return
     frame, column = wrong[0].tolist()
     when = f"frame {frame}" if times is None else f"{float(np.asarray(times)[frame]):.3f} s"
-    raise GmrError(_message(body.dofs[column], float(values[frame, column]), when, what))
+    raise ActionletError(_message(body.dofs[column], float(values[frame, column]), when, what))
 
 
-def outside(body: Body, angles: ArrayLike, *, inverted: bool = False) -> NDArray[np.bool_]:
+def outside(body: Body, angles: ArrayLike) -> NDArray[np.bool_]:
     """(..., D) whether each value is out of its range; NaN is."""
     values = np.asarray(angles, np.float64)
-    inside = (values >= body.low - _EXACT) & (values <= body.high + _EXACT)
-    return inside if inverted else ~inside
+    return ~((values >= body.low - _EXACT) & (values <= body.high + _EXACT))
 
 
 def _check_tracks(body: Body, tracks: Mapping[str, Any], what: str) -> None:
@@ -58,7 +57,7 @@ def _check_tracks(body: Body, tracks: Mapping[str, Any], what: str) -> None:
             wrong = np.flatnonzero(~((values >= dof.low - _EXACT) & (values <= dof.high + _EXACT)))
             if len(wrong):
                 when = f"the piece that begins at {float(start):.3f} s"
-                raise GmrError(_message(dof, float(values[wrong[0]]), when, what))
+                raise ActionletError(_message(dof, float(values[wrong[0]]), when, what))
 
 
 def _message(dof: Dof, value: float, when: str, what: str) -> str:
@@ -66,7 +65,7 @@ def _message(dof: Dof, value: float, when: str, what: str) -> str:
     shown = value if dof.is_length else np.degrees(value)
     of = f"{what}: " if what else ""
     return (
-        f"{of}joint '{dof.joint}', degree of freedom '{dof.name}': {shown:.4g} {unit} in {when} is outside the "
-        f"range of motion, {dof.low_deg:g} to {dof.high_deg:g} {unit}. Keep it inside, or clip it: "
+        f"{of}joint '{dof.joint}', degree of freedom '{dof.name}': {shown:.4g} {unit} in {when} is outside "
+        f"the range of motion, {dof.low_deg:g} to {dof.high_deg:g} {unit}. Keep it inside, or clip it: "
         "body.clipped(angles)"
     )
