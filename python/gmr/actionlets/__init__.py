@@ -15,10 +15,11 @@ if TYPE_CHECKING:
     from gmr.actionlets.body import Body
     from gmr.actionlets.dofs import Dof
     from gmr.actionlets.measured import Measured
+    from gmr.actionlets.pictures import film_strip
     from gmr.actionlets.score import Score
     from gmr.actionlets.track import Piece, Track
 
-__all__ = ["Actionlet", "Body", "Dof", "Measured", "Piece", "Score", "Track", "posing"]
+__all__ = ["Actionlet", "Body", "Dof", "Measured", "Piece", "Score", "Track", "film_strip", "posing"]
 
 _HOMES = {
     "Actionlet": "gmr.actionlets.actionlet",
@@ -28,6 +29,7 @@ _HOMES = {
     "Piece": "gmr.actionlets.track",
     "Score": "gmr.actionlets.score",
     "Track": "gmr.actionlets.track",
+    "film_strip": "gmr.actionlets.pictures",
 }
 _MODULES = frozenset({"posing"})
 

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from gmr.body.joints import find_joints
 from gmr.body.measures import UP_TURNS
-from gmr.editing.roles import known_roles
-from gmr.editing.scene import Scene, scene_of
+from gmr.editing.scene import scene_of
 from gmr.errors import DatasetError, GmrError
 from gmr.forest import home
 from gmr.motion import Motion
@@ -24,6 +23,7 @@ from gmr.quaternions import conjugate, multiply, rotated
 from gmr.skeleton import Skeleton
 from gmr.skinning.character import Character
 from gmr.skinning.driving.alignment import Laid, Pairs, lay_on
+from gmr.skinning.driving.body_of_motion import body_of_motion
 from gmr.skinning.driving.body_parts import Body, find_body
 from gmr.skinning.driving.driven import Driven, DrivingReport
 from gmr.skinning.driving.driven_legs import driven_legs, feet_of_motion
@@ -34,7 +34,6 @@ from gmr.skinning.driving.rest_poses import (
     motion_rest,
     shortest_turn,
     with_flat_feet,
-    zero_places,
 )
 from gmr.skinning.driving.stage import Stage, scale_of
 from gmr.skinning.driving.standing import measured_feet, stood
@@ -85,7 +84,7 @@ def drive(
     _check(at_home)
     scene = scene_of(at_home)
     mine = with_stated(_body_of_character(character), character.skeleton, tables["character"])
-    theirs, by_ends = _body_of(at_home, scene, tables["motion"])
+    theirs, by_ends = body_of_motion(at_home, scene, tables["motion"])
     following = follow(
         character.skeleton, at_home.skeleton, (mine, theirs), tables["follows"], by_ends=by_ends
     )
@@ -122,19 +121,6 @@ def _body_of_character(character: Character) -> Body | None:
     except DatasetError:
         return body
     return _begins(body, skeleton) if names_for_ends(skeleton, body, roles) else body
-
-
-def _body_of(motion: Motion, scene: Scene, stated: dict[str, str]) -> tuple[Body | None, bool]:
-    """The body of a motion, and whether its joints are named for the bones that end in them."""
-    lead = leading_rest_frames(motion)
-    first = motion[lead : lead + 1].positions(dtype=np.float64)[0]
-    upright = [rotated(np.array(UP_TURNS[scene.up]), pose) for pose in (zero_places(motion), first)]
-    bodies = (find_body(motion.skeleton, pose) for pose in upright)
-    body = next((one for one in bodies if one is not None), None)
-    by_ends = motion.acclaim is not None
-    if body is not None and not by_ends and body.found_by != "shape":
-        by_ends = names_for_ends(motion.skeleton, body, known_roles(motion) or {})
-    return with_stated(body, motion.skeleton, stated), by_ends
 
 
 def _begins(body: Body, motion: Skeleton) -> Body:
