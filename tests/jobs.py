@@ -1,0 +1,49 @@
+"""Work for other processes to do, which they find here by its name."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from pathlib import Path
+
+from gmr import FormatError
+
+
+def square(number: int) -> int:
+    return number * number
+
+
+def process_of(number: int) -> int:
+    time.sleep(0.05)
+    return os.getpid()
+
+
+def die_once(folder: str, number: int) -> int:
+    """The square; the process that is first to do number 3 is killed over it."""
+    if number == 3:
+        try:
+            (Path(folder) / "died").touch(exist_ok=False)
+        except FileExistsError:
+            return square(number)
+        os.kill(os.getpid(), signal.SIGKILL)
+    return square(number)
+
+
+def die_always(number: int) -> int:
+    if number == 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return square(number)
+
+
+def refuse_three(number: int) -> int:
+    if number == 3:
+        raise FormatError("no third", file="three.bvh", line=3)
+    return square(number)
+
+
+def count(folder: str, number: int) -> int:
+    """The square, and a mark of having been at work."""
+    time.sleep(0.02)
+    (Path(folder) / f"{number}").touch()
+    return square(number)
