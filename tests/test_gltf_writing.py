@@ -221,7 +221,9 @@ def test_the_khronos_validator_accepts_what_is_written(tmp_path: Path) -> None:
         gmr.write_character(odd_character(), tmp_path / "odd.glb")
     moving = gmr.read_character(RIGGED)
     gmr.write_character(moving, tmp_path / "poses.glb", moving.animation(fps=60), 1 / 60)
-    files += [tmp_path / "odd.glb", tmp_path / "poses.glb"]
+    walk = gmr.read(ROOT / "tests" / "data" / "cmu_07_01.bvh").with_unit("cm")
+    gmr.write(walk, tmp_path / "motion.glb")
+    files += [tmp_path / name for name in ("odd.glb", "poses.glb", "motion.glb")]
     found = verdicts(files)
     assert len(found) == len(files)
     assert [one for one in found if one["errors"]] == []

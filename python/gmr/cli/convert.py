@@ -130,6 +130,7 @@ def convert(
       gmr convert walk.bvh lean.bvh --drop-dummies
       gmr convert walk.bvh walk.amc
       gmr convert walk.bvh walk.gmr         GMR's own format: text, or binary as .gmrb
+      gmr convert walk.bvh walk.glb --unit m    glTF, which is in metres: nodes that move
       gmr convert walk.bvh neck.bvh --roots Neck
       gmr convert - - --fps 30 < walk.bvh > walk30.bvh
       gmr convert walk.c3d walk.bvh         a motion from markers; see gmr info walk.c3d first

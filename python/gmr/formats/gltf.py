@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gmr.errors import FormatError, GmrError
+from gmr.formats.gltf_motion_writer import glb_of_motion
 from gmr.formats.gltf_reader import read_gltf_character
 from gmr.formats.oddity import say
 from gmr.listing import quoted
@@ -12,7 +13,7 @@ from gmr.motion import Motion
 from gmr.skinning.as_motion import joint_motion
 from gmr.skinning.character import Character
 
-__all__ = ["read_gltf", "read_gltf_character"]
+__all__ = ["glb_of_motion", "read_gltf", "read_gltf_character"]
 
 _SHOWN = 6
 
