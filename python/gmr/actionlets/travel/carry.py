@@ -1,0 +1,256 @@
+"""From planned angles and contacts to a body that travels: feet that stand still, hips that follow the
+path."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gmr.actionlets.travel.by_feet import carried_by_feet
+from gmr.actionlets.travel.flight import Flight, falling, flights, taken_up
+from gmr.actionlets.travel.footing import Footing, footing, with_footprints
+from gmr.actionlets.travel.height import held_up, kept_bend, lowered, room
+from gmr.actionlets.travel.leg import BENT, Placed, place_foot
+from gmr.actionlets.travel.legs import legs_of, pelvis_shift, pelvis_turn, sole_of
+from gmr.actionlets.travel.mass import legs_moment, trunk_moment
+from gmr.actionlets.travel.path import led, level
+from gmr.actionlets.travel.plan import Planned, asked, stances
+from gmr.actionlets.travel.report import Report, measured
+from gmr.actionlets.travel.stepping import stepped
+from gmr.actionlets.travel.turns import turned
+from gmr.editing.easing import smooth_above
+from gmr.errors import ActionletError
+
+if TYPE_CHECKING:
+    from gmr.actionlets.body import Body
+
+__all__ = ["Carried", "carried"]
+
+Floats = NDArray[np.float64]
+
+_ROUNDS = 2
+"""How often flights are made ballistic anew with the legs that follow from the round before."""
+
+_RISES = 0.16
+"""Seconds before and after a rigid foot would sink within which the body rises."""
+
+
+@dataclass(frozen=True, eq=False)
+class Carried:
+    """A body that travels; :func:`gmr.actionlets.posing.motion` makes a motion of it.
+
+    Args:
+        body: D degrees of freedom.
+        angles: (F, D) radians and metres: the planned ones with corrected legs.
+        root: (F, 3) metres: the pelvis without sway, heave and surge, which are in the angles.
+        heading: (F,) radians, positive to the left.
+        fps: frames a second.
+        start: seconds at the first frame.
+        planned: (F, D) the planned angles.
+        plan: what was asked.
+    """
+
+    body: Body
+    angles: Floats
+    root: Floats
+    heading: Floats
+    fps: float
+    start: float
+    planned: Floats
+    plan: Planned
+
+    @cached_property
+    def report(self) -> Report:
+        """What was asked and what came of it, measured on the angles when it is first looked at."""
+        return measured(
+            self.body,
+            self.planned,
+            self.angles,
+            self.root,
+            self.heading,
+            self.plan,
+            self.fps,
+            self.start,
+        )
+
+
+def carried(
+    body: Body, angles: ArrayLike, plan: Planned, fps: float = 120.0, *, start: float = 0.0
+) -> Carried:
+    """Lets a body travel as planned.
+
+    Args:
+        body: D degrees of freedom.
+        angles: (F, D) planned angles in radians, translations of the root in metres.
+        plan: contacts, speed, turn rate and ``"path"`` or ``"feet"``.
+        fps: frames a second.
+        start: seconds at the first frame.
+
+    Raises:
+        ActionletError: a shape, a time or a kind of travel makes no sense; the message says which.
+    """
+    values = _checked(body, angles, plan, fps)
+    count = len(values)
+    times = start + np.arange(count) / fps
+    path = led(asked(plan.speed, times, "speed"), asked(plan.turn_rate, times, "turn_rate"), fps)
+    pelvis, shift = pelvis_turn(body, values), pelvis_shift(body, values)
+    both = _footings(body, values, pelvis, plan, fps, start)
+    if plan.travel == "feet":
+        ground, heading, both = carried_by_feet(both, path, _balance(body, values, both), fps)
+    else:
+        place, heading = path
+        ground = place + level(shift[:, ::2], heading)
+        both = [with_footprints(one, ground, heading) for one in both]
+    root = _upright(both, ground, heading, fps)
+    both = [one.with_heels(root, heading) for one in both]
+    root[:, 1] = lowered(root[:, 1], _highest(both, root, heading, fps), fps)
+    found, root = _settled(body, values, pelvis, both, root, heading, fps)
+    if both[0].leg.rigid:
+        root[:, 1] += _sunk(both, found, pelvis, root, fps)
+    root[:, 1] -= shift[:, 1]
+    root[:, ::2] -= level(shift[:, ::2], heading)
+    return Carried(body, found, root, heading, fps, start, values, plan)
+
+
+def _checked(body: Body, angles: ArrayLike, plan: Planned, fps: float) -> Floats:
+    values = np.asarray(angles, np.float64)
+    if values.ndim != 2 or values.shape[1] != body.dof_count or not len(values):
+        raise ActionletError(
+            f"angles have the shape {values.shape}; the {body.name} body needs (frames, {body.dof_count}), a "
+            "column for each of body.dofs, and one frame at least"
+        )
+    if not np.isfinite(values).all():
+        frame, column = np.argwhere(~np.isfinite(values))[0].tolist()
+        raise ActionletError(
+            f"{body.names[column]} is {values[frame, column]} in frame {frame}; give a number"
+        )
+    if plan.travel not in ("path", "feet"):
+        raise ActionletError(f"travel is {plan.travel!r}; a body travels by 'path' or by 'feet'")
+    if not (np.isfinite(fps) and fps > 0):
+        raise ActionletError(f"fps is {fps}; give the frames in a second, above 0")
+    return values
+
+
+def _footings(
+    body: Body, values: Floats, pelvis: Floats, plan: Planned, fps: float, start: float
+) -> list[Footing]:
+    """Both legs with their stances."""
+    every = stances(plan, len(values), fps, start)
+    found = []
+    for k, leg in enumerate(legs_of(body)):
+        foot = place_foot(leg, values)
+        nominal = Placed(turned(pelvis, foot.ankle), pelvis @ foot.foot)
+        own = [stance for stance in every if stance.leg == k]
+        found.append(footing(leg, sole_of(body, leg), nominal, turned(pelvis, leg.hip), own))
+    if not any(one.stances for one in found):
+        raise ActionletError(
+            "no foot touches the ground in these frames: give a contact of 'left' or 'right' in plan.contacts"
+        )
+    return found
+
+
+def _balance(body: Body, values: Floats, both: Sequence[Footing]) -> Floats:
+    """(F, 2) the centre of mass of the planned body from its pelvis, where flights begin and end; 0
+    elsewhere."""
+    found = np.zeros((len(values), 2))
+    ends = [frame for flight in _air(both, len(values)) for frame in (flight.off, flight.down)]
+    if ends:
+        posed = values[ends]
+        found[ends] = (trunk_moment(body, posed) + legs_moment(body, posed))[:, ::2]
+    return found
+
+
+def _air(both: Sequence[Footing], count: int) -> list[Flight]:
+    on_ground = np.zeros(count, bool)
+    for one in both:
+        on_ground[one.frames] = True
+    return flights(on_ground)
+
+
+def _upright(both: Sequence[Footing], ground: Floats, heading: Floats, fps: float) -> Floats:
+    """(F, 3) the pelvis over its path, at the height at which the legs would keep their nominal bend."""
+    root = np.zeros((len(ground), 3))
+    root[:, ::2] = ground
+    heights, loads = np.zeros((len(ground), 2)), np.zeros((len(ground), 2))
+    for k, one in enumerate(both):
+        on = one.frames
+        foot, _ = one.stood(heading)
+        _, law, length = one.end()
+        heights[on, k] = room(law, _hip(one, root, heading), foot, _bend(one, root, fps), length)
+        loads[on, k] = one.loads(fps)
+    root[:, 1] = held_up(heights, loads, fps)
+    return root
+
+
+def _hip(one: Footing, root: Floats, heading: Floats) -> Floats:
+    """(n, 3) the hip of a leg on the ground: x and z in the world, its height from the pelvis."""
+    hip = one.hip[one.frames]
+    hip[:, ::2] = root[one.frames][:, ::2] + level(hip[:, ::2], heading[one.frames])
+    return hip
+
+
+def _bend(one: Footing, root: Floats, fps: float) -> Floats:
+    """(n,) radians by which a leg on the ground stays bent."""
+    if not one.leg.rigid:
+        return kept_bend(root, one.over, one.frames, fps)
+    return np.full(len(one.frames), BENT)
+
+
+def _highest(both: Sequence[Footing], root: Floats, heading: Floats, fps: float) -> Floats:
+    """(F,) height that the legs on the ground allow the pelvis; inf in flight."""
+    highest = np.full(len(root), np.inf)
+    for one in both:
+        foot, _ = one.stood(heading)
+        allowed = room(one.end()[1], _hip(one, root, heading), foot, _bend(one, root, fps))
+        highest[one.frames] = np.minimum(highest[one.frames], allowed)
+    return highest
+
+
+def _settled(
+    body: Body,
+    values: Floats,
+    pelvis: Floats,
+    both: Sequence[Footing],
+    root: Floats,
+    heading: Floats,
+    fps: float,
+) -> tuple[Floats, Floats]:
+    """(F, D) angles and (F, 3) pelvis, in stance and flight."""
+    air = _air(both, len(root))
+    angles = stepped(values, pelvis, both, root, heading, fps)
+    if not air:
+        return angles, root
+    frames = np.concatenate([np.arange(flight.off, flight.down + 1) for flight in air])
+    trunk = trunk_moment(body, values[frames])
+    centre = _in_world(trunk + legs_moment(body, angles[frames]), heading[frames])
+    for _ in range(_ROUNDS):
+        moved = taken_up(root, air, centre, fps)
+        over = np.maximum(moved[:, 1] - _highest(both, moved, heading, fps), 0)
+        if over.any():
+            root = root.copy()
+            root[:, 1] = lowered(root[:, 1], root[:, 1] - over, fps)
+            moved = taken_up(root, air, centre, fps)
+        angles = stepped(values, pelvis, both, moved, heading, fps)
+        centre = _in_world(trunk + legs_moment(body, angles[frames]), heading[frames])
+    return angles, falling(moved, air, centre, fps)
+
+
+def _sunk(both: Sequence[Footing], angles: Floats, pelvis: Floats, root: Floats, fps: float) -> Floats:
+    """(F,) how far a body with rigid ankles has to rise so that no foot is below the ground, smooth."""
+    lowest = np.full(len(root), np.inf)
+    for one in both:
+        foot = place_foot(one.leg, angles)
+        for point in (one.leg.heel, one.leg.toe):
+            height = (pelvis[:, 1] * (foot.ankle + turned(foot.foot, point))).sum(axis=1) + root[:, 1]
+            lowest = np.minimum(lowest, height)
+    return smooth_above(np.maximum(-lowest, 0), max(round(_RISES * fps), 2))
+
+
+def _in_world(vectors: Floats, heading: Floats) -> Floats:
+    vectors[:, ::2] = level(vectors[:, ::2], heading)
+    return vectors

@@ -1,0 +1,172 @@
+"""A foot and the ground: where each stance has its footprint, and where the foot is in every frame of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.actionlets.travel.heel_rise import risen
+from gmr.actionlets.travel.leg import Law, Leg, Placed, law
+from gmr.actionlets.travel.path import level
+from gmr.actionlets.travel.plan import Stance
+from gmr.actionlets.travel.sole import Sole, pitch_of, yaw_of
+from gmr.actionlets.travel.turns import about_y, pitched, turned
+from gmr.editing.easing import smooth_step
+
+__all__ = ["Footing", "footing", "with_footprints"]
+
+Floats = NDArray[np.float64]
+
+_LOADING = 0.12
+"""Seconds within which a foot that lands takes the body over."""
+
+_HANDED_ON = 0.95
+"""Share of its load that a foot on its toes has handed on."""
+
+_TURNED = np.radians(28.0)
+_TURNED_MOST = np.radians(45.0)
+"""Radians between foot and pelvis from which a foot that rests on its heel or toes pivots, and that it does
+not exceed then."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Footing:
+    """A leg and all its stances, n frames together."""
+
+    leg: Leg
+    sole: Sole
+    nominal: Placed
+    """(F,) the nominal foot in the frame of the heading, from the pelvis."""
+    hip: Floats
+    """(F, 3) the hip, in the same way."""
+    stances: tuple[Stance, ...]
+    frames: NDArray[np.intp]
+    """(n,) frames on the ground."""
+    starts: NDArray[np.intp]
+    """Where each stance begins among them."""
+    over: Floats
+    """(n,) share of the stance that is over; 1 where the foot did not land in this motion."""
+    pitch: Floats
+    """(n,) radians that the toes point up."""
+    place: Floats
+    """(n, 2) the footprint: x and z on the ground under the ankle of the flat foot."""
+    yaw: Floats
+    """(n,) the footprint's direction in radians, 0 along +Z, positive to the left."""
+
+    def spread(self, values: Floats) -> Floats:
+        """(n, ...) one value of each stance, in each of its frames."""
+        counts = [stance.last - stance.first + 1 for stance in self.stances]
+        return np.repeat(values, counts, axis=0)
+
+    def rolled(self) -> tuple[Floats, Floats]:
+        """(n, 2) x and z from the footprint and (n,) height of the ankle of a foot that rolls, before its
+        yaw."""
+        point, ground = self.sole.contact(self.pitch)
+        arm = turned(pitched(self.pitch), point)
+        return ground - arm[:, ::2], -arm[:, 1]
+
+    def stood(self, heading: Floats) -> tuple[Floats, Floats]:
+        """(n, 3) where the leg ends in the world, and (n, 3, 3) the foot in the frame of the (F,) headings.
+
+        A leg ends in its ankle; one whose ankle is rigid in the point of its sole that touches the ground,
+        and its foot is the nominal one.
+        """
+        facing = heading[self.frames]
+        yaw = self.yaw - facing
+        point, ground = self.sole.contact(self.pitch)
+        touch = self.place + level(ground, self.yaw)
+        if self.leg.rigid:
+            return np.stack([touch[:, 0], np.zeros(len(touch)), touch[:, 1]], axis=1), self.nominal.foot[
+                self.frames
+            ]
+        foot = about_y(yaw + _pivot(yaw, self.pitch)) @ pitched(self.pitch)
+        arm = turned(foot, point)
+        side = level(arm[:, ::2], facing)
+        return np.stack([touch[:, 0] - side[:, 0], -arm[:, 1], touch[:, 1] - side[:, 1]], axis=1), foot
+
+    def end(self) -> tuple[Floats, Law, Floats]:
+        """Where the leg ends: (n, 3) from the ankle, the law of that leg, and (n,) its nominal length."""
+        hip, ankle = self.hip[self.frames], self.nominal.ankle[self.frames]
+        if not self.leg.rigid:
+            return np.zeros_like(hip), self.leg.law, np.linalg.norm(ankle - hip, axis=1)
+        tip, _ = self.sole.contact(self.pitch)
+        nominal = ankle + turned(self.nominal.foot[self.frames], tip)
+        return tip, law(self.leg, tip), np.linalg.norm(nominal - hip, axis=1)
+
+    def loads(self, fps: float) -> Floats:
+        """(n,) share of the body that the foot carries: smoothly taken over and handed on.
+
+        A foot on its toes hands the body on: where it puts the ankle says little about the pelvis.
+        """
+        shares = [_load(stance, fps) for stance in self.stances]
+        load = np.concatenate(shares) if shares else np.empty(0)
+        return load * (1 - _HANDED_ON * smooth_step(-self.pitch / np.radians(20.0)))
+
+    def with_heels(self, root: Floats, heading: Floats) -> Footing:
+        """The heels risen where a leg would be too short for a pelvis at (F, 3) ``root``."""
+        if self.leg.rigid or not len(self.frames):
+            return self
+        hip = root[self.frames] + self.hip[self.frames]
+        hip[:, ::2] = root[self.frames][:, ::2] + level(self.hip[self.frames][:, ::2], heading[self.frames])
+        return replace(self, pitch=risen(self.leg, self.place, self.yaw, hip, self.pitch))
+
+
+def footing(leg: Leg, sole: Sole, nominal: Placed, hip: Floats, stances: Sequence[Stance]) -> Footing:
+    """The stances of a leg, without footprints yet: they are all at the origin."""
+    counts = np.array([stance.last - stance.first + 1 for stance in stances], np.intp)
+    frames = [np.arange(stance.first, stance.last + 1) for stance in stances]
+    on = np.concatenate(frames) if frames else np.empty(0, np.intp)
+    pitch = sole.settled(pitch_of(nominal.foot[on]))
+    starts = np.cumsum(counts) - counts
+    shares = [np.linspace(0 if stance.lands else 1, 1, n) for stance, n in zip(stances, counts, strict=True)]
+    over = np.concatenate(shares) if shares else np.empty(0)
+    place, yaw = np.zeros((len(on), 2)), np.zeros(len(on))
+    return Footing(leg, sole, nominal, hip, tuple(stances), on, starts, over, pitch, place, yaw)
+
+
+def with_footprints(one: Footing, ground: Floats, heading: Floats) -> Footing:
+    """The footprints that the nominal foot fits best, mostly in the middle of each stance.
+
+    Each frame tells a footprint, from which a foot would have rolled to where it nominally is. The nominal
+    foot of a body that changes its speed drifts over the ground, so the mean of them is taken, weighted by a
+    raised cosine over the stance.
+
+    Args:
+        one: without footprints.
+        ground: (F, 2) x and z of the pelvis.
+        heading: (F,) radians.
+    """
+    if not one.stances:
+        return one
+    on = one.frames
+    weights = np.concatenate([_raised_cosine(stance.last - stance.first + 1) for stance in one.stances])
+    nominal_yaw = heading[on] + yaw_of(one.nominal.foot[on])
+    yaw = one.spread(np.add.reduceat(weights * nominal_yaw, one.starts))
+    forward, _ = one.rolled()
+    places = ground[on] + level(one.nominal.ankle[on][:, ::2], heading[on]) - level(forward, yaw)
+    place = one.spread(np.add.reduceat(weights[:, None] * places, one.starts, axis=0))
+    return replace(one, place=place, yaw=yaw)
+
+
+def _raised_cosine(count: int) -> Floats:
+    weights = np.hanning(count + 2)[1:-1]
+    return np.asarray(weights / weights.sum(), np.float64)
+
+
+def _pivot(yaw: Floats, pitch: Floats) -> Floats:
+    """(n,) radians that a foot turns on heel or toes, so that the leg is not twisted more than it can."""
+    over = np.maximum(np.abs(yaw) - _TURNED, 0)
+    kept = over * over / (over + _TURNED_MOST - _TURNED)
+    return np.asarray(-np.sign(yaw) * kept * smooth_step(np.abs(pitch) / np.radians(10.0)), np.float64)
+
+
+def _load(stance: Stance, fps: float) -> Floats:
+    """(n,) share of the body that a foot takes over when it lands and hands on when it leaves."""
+    count = stance.last - stance.first + 1
+    ramp = max(min(_LOADING * fps, (count - 1) / 2), 1.0)
+    up = np.arange(count) / ramp if stance.lands else np.ones(count)
+    down = np.arange(count)[::-1] / ramp if stance.leaves else np.ones(count)
+    return smooth_step(np.minimum(up, down)) + 1e-9

@@ -1,0 +1,218 @@
+"""A leg: where its angles put the foot, and which angles put the foot where it is wanted.
+
+Both in closed form. The hip turns by flexion, abduction and rotation, the knee is a hinge. Of the four angles
+the rotation is chosen; the knee follows from the distance of hip and ankle by the law of cosines, abduction
+and flexion from the direction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.actionlets.travel.turns import about_x, angles_of, product, turned
+
+__all__ = [
+    "BENT",
+    "Law",
+    "Leg",
+    "Placed",
+    "law",
+    "leg_angles",
+    "leg_reach",
+    "place_foot",
+    "rigid_leg_angles",
+    "unlocked",
+]
+
+Floats = NDArray[np.float64]
+
+BENT = np.radians(3.0)
+"""Bend of the knee, in radians, below which the ground is not asked of a leg: nearer to straight, a
+millimetre turns the knee by ten degrees."""
+
+_IN_AIR = np.radians(1.5)
+"""The same of a leg in the air."""
+
+_STRAIGHTEST = np.radians(0.35)
+"""Bend of the knee that a leg comes near to, where it is asked to be longer than it is."""
+
+_IN_LINE = np.radians(10.0)
+"""Radians of a knee's bend from which a leg with a rigid ankle bends fully to one side."""
+
+
+@dataclass(frozen=True, eq=False)
+class Leg:
+    """One leg of a body, in metres, as far as travelling needs it."""
+
+    side: str
+    """"left" or "right"."""
+    hip: Floats
+    """(3,) the hip from the pelvis, at rest."""
+    thigh: Floats
+    """(3,) the knee from the hip, at rest."""
+    shank: Floats
+    """(3,) the ankle from the knee, at rest."""
+    heel: Floats
+    """(3,) lowest point of the heel from the ankle, at rest."""
+    toe: Floats
+    """(3,) tip of the toes from the ankle, at rest, as low as the heel."""
+    hip_columns: tuple[int, int, int]
+    """Columns of hip flexion, abduction and rotation in the table of angles."""
+    hip_signs: Floats
+    """(3,) -1 where the angle turns against X, Z or Y."""
+    knee_column: int
+    knee_sign: float
+    ankle_columns: tuple[int, int, int] | None
+    """Columns of ankle flexion, inversion and rotation; None for a rigid ankle."""
+    ankle_signs: Floats
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the ankle does not move."""
+        return self.ankle_columns is None
+
+    @property
+    def columns(self) -> list[int]:
+        """Columns of hip flexion, abduction, rotation, knee and ankle flexion, inversion, rotation."""
+        return [*self.hip_columns, self.knee_column, *(self.ankle_columns or ())]
+
+    @cached_property
+    def law(self) -> Law:
+        """Of hip, knee and ankle."""
+        return law(self, np.zeros(3))
+
+
+class Law(NamedTuple):
+    """Law of cosines across a hinge: the square of the distance of hip and end is ``fixed + swing
+    cos(bend)``."""
+
+    fixed: Floats
+    """(...,) square metres."""
+    swing: Floats
+    """(...,) square metres."""
+    straight: Floats
+    """(...,) radians about X from the knee at rest to the knee that is bent by 0: hip, knee and end in
+    line."""
+
+
+def law(leg: Leg, tip: Floats) -> Law:
+    """The law of cosines of a leg that ends in (..., 3) a point of a foot that goes with the shank, given
+    from the ankle at rest."""
+    tx, ty, tz = leg.thigh.tolist()
+    sx, sy, sz = np.moveaxis(leg.shank + tip, -1, 0)
+    p, q = ty * sy + tz * sz, tz * sy - ty * sz
+    squares = tx * tx + ty * ty + tz * tz + sx * sx + sy * sy + sz * sz
+    return Law(squares + 2 * tx * sx, 2 * np.hypot(p, q), np.arctan2(q, p))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Placed:
+    """A foot in the frame of the pelvis or of the heading."""
+
+    ankle: Floats
+    """(F, 3)"""
+    foot: Floats
+    """(F, 3, 3)"""
+
+
+def place_foot(leg: Leg, angles: Floats) -> Placed:
+    """Where (F, D) angles put the foot, in the frame of the pelvis."""
+    flexion, abduction, rotation = (angles[:, leg.hip_columns] * leg.hip_signs).T
+    hip = product(flexion, abduction, rotation)
+    lower = hip @ about_x(leg.knee_sign * angles[:, leg.knee_column])
+    ankle = leg.hip + turned(hip, leg.thigh) + turned(lower, leg.shank)
+    if leg.ankle_columns is None:
+        return Placed(ankle, lower)
+    x, z, y = (angles[:, leg.ankle_columns] * leg.ankle_signs).T
+    return Placed(ankle, lower @ product(x, z, y))
+
+
+def leg_reach(law: Law, bend: Floats | float) -> Floats:
+    """Distance of hip and end, in metres, with the knee ``bend`` radians from straight."""
+    return np.asarray(np.sqrt(law.fixed + law.swing * np.cos(bend)), np.float64)
+
+
+def leg_angles(leg: Leg, ankle: Floats, rotation: Floats, foot: Floats | None) -> Floats:
+    """Angles that bring the ankle to a place, with a chosen rotation of the hip.
+
+    Args:
+        leg: the leg.
+        ankle: (F, 3) in the frame of the pelvis. Where it is too far, the leg nearly straightens towards it.
+        rotation: (F,) the hip's rotation in radians.
+        foot: (F, 3, 3) wanted turn of the foot in the frame of the pelvis; None for a rigid ankle.
+
+    Returns:
+        (F, 7) hip flexion, abduction, rotation, knee, ankle flexion, inversion, rotation; (F, 4) without
+        foot.
+    """
+    way = ankle - leg.hip
+    hinge = leg.knee_sign * leg.law.straight + _bend(leg.law, np.sqrt((way * way).sum(axis=1)))
+    found, hip = _hip_angles(leg, way, hinge, rotation, np.zeros(3))
+    if foot is None:
+        return found
+    lower = product(*hip) @ about_x(leg.knee_sign * hinge)
+    ankles = np.stack(angles_of(lower.swapaxes(1, 2) @ foot), axis=1) * leg.ankle_signs
+    return np.concatenate([found, ankles], axis=1)
+
+
+def rigid_leg_angles(leg: Leg, touch: Floats, tip: Floats, planned: Floats) -> Floats:
+    """Angles that bring a point of a foot that goes with the shank to a place, near planned ones.
+
+    Hip, knee and the tip of the toes get in line while the knee is bent by some 20 degrees, and then the leg
+    cannot be shorter or longer by its knee alone; it bends to the side to which the planned knee does, and
+    less the nearer that is to the line.
+
+    Args:
+        leg: the leg.
+        touch: (n, 3) where the point is wanted, in the frame of the pelvis.
+        tip: (n, 3) the point from the ankle, in the frame of the foot.
+        planned: (n, 4) planned angles; the hip's rotation is kept.
+    """
+    way = touch - leg.hip
+    end = law(leg, tip)
+    straight = leg.knee_sign * end.straight
+    side = np.clip((planned[:, 3] - straight) / _IN_LINE, -1, 1)
+    bend = _bend(end, np.sqrt((way * way).sum(axis=1))) * side * (1.5 - 0.5 * side * side)
+    return _hip_angles(leg, way, unlocked(straight + bend), planned[:, 2], tip)[0]
+
+
+def unlocked(knee: Floats) -> Floats:
+    """(n,) bend of the knee in radians, softly kept above 1.5 degrees: ``k`` from 3 degrees on."""
+    x = np.maximum(knee, 0)
+    return np.asarray(np.where(x < 2 * _IN_AIR, _IN_AIR + x * x / (4 * _IN_AIR), knee), np.float64)
+
+
+def _hip_angles(
+    leg: Leg, way: Floats, hinge: Floats, rotation: Floats, tip: Floats
+) -> tuple[Floats, tuple[Floats, Floats, Floats]]:
+    """(n, 4) hip and knee whose leg's end lies in the direction of (n, 3) ways, and the signed hip angles."""
+    turn = leg.knee_sign * hinge
+    c, s = np.cos(turn), np.sin(turn)
+    sx, sy, sz = np.moveaxis(leg.shank + tip, -1, 0)
+    x = leg.thigh[0] + sx
+    y = leg.thigh[1] + sy * c - sz * s
+    z = leg.thigh[2] + sy * s + sz * c
+
+    # (x, y, z) is the end from the hip before the hip turns: Ry, then Rz, then Rx bring it to ``way``.
+    ry = leg.hip_signs[2] * rotation
+    x, z = x * np.cos(ry) + z * np.sin(ry), z * np.cos(ry) - x * np.sin(ry)
+    upright = np.hypot(x, y)
+    rz = -np.arccos(np.clip(way[:, 0] / upright, -1, 1)) - np.arctan2(y, x)
+    y = x * np.sin(rz) + y * np.cos(rz)
+    rx = np.arctan2(way[:, 2], way[:, 1]) - np.arctan2(z, y)
+    rx = (rx + np.pi) % (2 * np.pi) - np.pi
+    angles = np.stack([leg.hip_signs[0] * rx, leg.hip_signs[1] * rz, rotation, hinge], axis=1)
+    return angles, (rx, rz, ry)
+
+
+def _bend(law: Law, distance: Floats) -> Floats:
+    """(F,) radians of the knee from straight by the law of cosines, softly kept from straightening."""
+    near, end = leg_reach(law, _IN_AIR), leg_reach(law, _STRAIGHTEST)
+    over = np.maximum(distance - near, 0) / (end - near)
+    soft = np.where(over > 0, end - (end - near) * np.exp(-over), distance)
+    return np.asarray(np.arccos(np.clip((soft * soft - law.fixed) / law.swing, -1, 1)), np.float64)

@@ -1,0 +1,108 @@
+"""The sole: how a foot that rolls from heel to toe without slipping carries the ankle along.
+
+The foot is rigid. While the toes point up it turns about its heel, while they point down about the tip of the
+toes, and when it is flat it rests. A rigid ankle passes the flat foot at full speed, so that a sole with
+corners would jolt the leg; its sole is rounded. Both are one formula: a convex sole is told by its support
+function ``h(pitch)``, the height of the ankle over the ground, and rolls forward by ``s = -h' - integral of
+h``.
+Source: the support function of a convex curve, e.g. Santalo, "Integral Geometry and Geometric Probability"
+(1976), section 1.2; for rolling feet Hansen, Childress and Knox, "Roll-over shapes of human locomotor
+systems" (2004).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.editing.easing import smooth_step
+
+__all__ = ["Sole", "pitch_of", "yaw_of"]
+
+Floats = NDArray[np.float64]
+
+_FLAT = np.radians(3.0)
+_LARGE = 0.8
+_FREE = np.radians(14.0)
+"""Radians of nominal pitch up to which a foot on the ground is flat, and from which it keeps its pitch."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Sole:
+    """Heel and toe of a foot and how much the sole between them is rounded."""
+
+    heel: Floats
+    """(3,) from the ankle at rest, metres."""
+    toe: Floats
+    """(3,) the same, as low as the heel."""
+    ball: Floats
+    """(3,) the same: about which a foot with toes that bend would rise."""
+    rounding: float
+    """Radians of pitch to both sides of flat over which contact moves from heel to toe; 0 for corners."""
+
+    def settled(self, pitch: Floats) -> Floats:
+        """(F,) pitch of the foot on the ground from its nominal pitch.
+
+        It is flat to 3 degrees and free from 14 on, C2 between, so that a foot comes to rest on its sole and
+        rises from it without a jolt. The nominal foot of people rises about its ball, this one, whose toes do
+        not bend, about their tip: it rises by less, so that the ankle is about as high. A rigid ankle has no
+        choice.
+        """
+        if self.rounding:
+            return pitch
+        size = np.abs(pitch)
+        share = float(self.ball[2] / self.toe[2])
+        less = share + (_LARGE - share) * smooth_step((size - np.radians(15.0)) / np.radians(45.0))
+        found: Floats = pitch * np.where(pitch < 0, less, 1.0) * smooth_step((size - _FLAT) / (_FREE - _FLAT))
+        return found
+
+    def contact(self, pitch: Floats) -> tuple[Floats, Floats]:
+        """Where the sole touches the ground.
+
+        Args:
+            pitch: (F,) radians, toes up.
+
+        Returns:
+            (F, 3) the point of the sole, from the ankle, in the foot's frame, and (F, 2) where on the ground
+            that is, x and z from the place under the ankle of the flat foot, before its yaw.
+        """
+        front = pitch < 0
+        point = np.where(front[:, None], self.toe, self.heel)
+        if not self.rounding:
+            return point, point[:, ::2]
+        return self._rounded(pitch, point)
+
+    def _rounded(self, pitch: Floats, corner: Floats) -> tuple[Floats, Floats]:
+        high = -float(self.heel[1])
+        zh, zt = float(self.heel[2]), float(self.toe[2])
+        length, middle = zt - zh, (zh + zt) / 2
+        w = length * np.sin(self.rounding)
+        c, s = np.cos(pitch), np.sin(pitch)
+        inner = np.clip(pitch, -self.rounding, self.rounding)
+        ci, si = np.cos(inner), np.sin(inner)
+        round_ = np.abs(pitch) < self.rounding
+        z = corner[:, 2]
+        h = np.where(round_, high * c - middle * s + ((length * s) ** 2 + w * w) / (4 * w), high * c - z * s)
+        slope = np.where(
+            round_, -high * s - middle * c + length * length * s * c / (2 * w), -high * s - z * c
+        )
+        # The integral of h from 0 to the end of the rounded part, then on about the corner.
+        area = high * si + middle * (ci - 1) + (length**2 * (inner - si * ci) / 2 + w * w * inner) / (4 * w)
+        area = area + np.where(round_, 0.0, high * (s - si) + z * (c - ci))
+        forward = -slope
+        point = np.stack(
+            [(self.heel[0] + self.toe[0]) / 2 + 0 * c, -forward * s - h * c, forward * c - h * s]
+        )
+        return point.T, np.stack([point[0], forward - area], axis=1)
+
+
+def pitch_of(foot: Floats) -> Floats:
+    """(F,) radians that the toes point up, of (F, 3, 3) feet."""
+    return np.asarray(np.arcsin(np.clip(foot[:, 1, 2], -1, 1)), np.float64)
+
+
+def yaw_of(foot: Floats) -> Floats:
+    """(F,) radians that the foot points to the left of its frame's forward."""
+    return np.asarray(np.arctan2(foot[:, 0, 2], foot[:, 2, 2]), np.float64)
