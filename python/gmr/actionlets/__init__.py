@@ -10,7 +10,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from gmr.actionlets import posing
+    from gmr.actionlets import posing, travel
     from gmr.actionlets.actionlet import Actionlet
     from gmr.actionlets.body import Body
     from gmr.actionlets.dofs import Dof
@@ -19,7 +19,18 @@ if TYPE_CHECKING:
     from gmr.actionlets.score import Score
     from gmr.actionlets.track import Piece, Track
 
-__all__ = ["Actionlet", "Body", "Dof", "Measured", "Piece", "Score", "Track", "film_strip", "posing"]
+__all__ = [
+    "Actionlet",
+    "Body",
+    "Dof",
+    "Measured",
+    "Piece",
+    "Score",
+    "Track",
+    "film_strip",
+    "posing",
+    "travel",
+]
 
 _HOMES = {
     "Actionlet": "gmr.actionlets.actionlet",
@@ -31,7 +42,7 @@ _HOMES = {
     "Track": "gmr.actionlets.track",
     "film_strip": "gmr.actionlets.pictures",
 }
-_MODULES = frozenset({"posing"})
+_MODULES = frozenset({"posing", "travel"})
 
 
 def __getattr__(name: str) -> "Any":
