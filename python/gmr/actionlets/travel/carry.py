@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gmr.actionlets.travel.by_feet import carried_by_feet
 from gmr.actionlets.travel.flight import Flight, falling, flights, taken_up
-from gmr.actionlets.travel.footing import Footing, footing, with_footprints
+from gmr.actionlets.travel.footing import Footing, Standing, footing, with_footprints
 from gmr.actionlets.travel.height import held_up, kept_bend, lowered, room
 from gmr.actionlets.travel.leg import BENT, Placed, place_foot
 from gmr.actionlets.travel.legs import legs_of, pelvis_shift, pelvis_turn, sole_of
@@ -106,10 +106,10 @@ def carried(
         place, heading = path
         ground = place + level(shift[:, ::2], heading)
         both = [with_footprints(one, ground, heading) for one in both]
-    root = _upright(both, ground, heading, fps)
-    both = [one.with_heels(root, heading) for one in both]
-    root[:, 1] = lowered(root[:, 1], _highest(both, root, heading, fps), fps)
-    found, root = _settled(body, values, pelvis, both, root, heading, fps)
+    root = _upright([one.standing(heading) for one in both], ground, heading, fps)
+    stood = [one.with_heels(root, heading).standing(heading) for one in both]
+    root[:, 1] = lowered(root[:, 1], _highest(stood, root, heading, fps), fps)
+    found, root = _settled(body, values, pelvis, stood, root, heading, fps)
     if both[0].leg.rigid:
         root[:, 1] += _sunk(both, found, pelvis, root, fps)
     root[:, 1] -= shift[:, 1]
@@ -146,7 +146,7 @@ def _footings(
         foot = place_foot(leg, values)
         nominal = Placed(turned(pelvis, foot.ankle), pelvis @ foot.foot)
         own = [stance for stance in every if stance.leg == k]
-        found.append(footing(leg, sole_of(body, leg), nominal, turned(pelvis, leg.hip), own))
+        found.append(footing(leg, sole_of(body, leg), nominal, turned(pelvis, leg.hip), own, fps))
     if not any(one.stances for one in found):
         raise ActionletError(
             "no foot touches the ground in these frames: give a contact of 'left' or 'right' in plan.contacts"
@@ -172,17 +172,16 @@ def _air(both: Sequence[Footing], count: int) -> list[Flight]:
     return flights(on_ground)
 
 
-def _upright(both: Sequence[Footing], ground: Floats, heading: Floats, fps: float) -> Floats:
+def _upright(both: Sequence[Standing], ground: Floats, heading: Floats, fps: float) -> Floats:
     """(F, 3) the pelvis over its path, at the height at which the legs would keep their nominal bend."""
     root = np.zeros((len(ground), 3))
     root[:, ::2] = ground
     heights, loads = np.zeros((len(ground), 2)), np.zeros((len(ground), 2))
-    for k, one in enumerate(both):
-        on = one.frames
-        foot, _ = one.stood(heading)
-        _, law, length = one.end()
-        heights[on, k] = room(law, _hip(one, root, heading), foot, _bend(one, root, fps), length)
-        loads[on, k] = one.loads(fps)
+    for k, stood in enumerate(both):
+        one = stood.one
+        bend, hip = _bend(one, root, fps), _hip(one, root, heading)
+        heights[one.frames, k] = room(stood.law, hip, stood.end, bend, stood.length)
+        loads[one.frames, k] = one.loads(fps)
     root[:, 1] = held_up(heights, loads, fps)
     return root
 
@@ -201,12 +200,12 @@ def _bend(one: Footing, root: Floats, fps: float) -> Floats:
     return np.full(len(one.frames), BENT)
 
 
-def _highest(both: Sequence[Footing], root: Floats, heading: Floats, fps: float) -> Floats:
+def _highest(both: Sequence[Standing], root: Floats, heading: Floats, fps: float) -> Floats:
     """(F,) height that the legs on the ground allow the pelvis; inf in flight."""
     highest = np.full(len(root), np.inf)
-    for one in both:
-        foot, _ = one.stood(heading)
-        allowed = room(one.end()[1], _hip(one, root, heading), foot, _bend(one, root, fps))
+    for stood in both:
+        one = stood.one
+        allowed = room(stood.law, _hip(one, root, heading), stood.end, _bend(one, root, fps))
         highest[one.frames] = np.minimum(highest[one.frames], allowed)
     return highest
 
@@ -215,19 +214,18 @@ def _settled(
     body: Body,
     values: Floats,
     pelvis: Floats,
-    both: Sequence[Footing],
+    both: Sequence[Standing],
     root: Floats,
     heading: Floats,
     fps: float,
 ) -> tuple[Floats, Floats]:
     """(F, D) angles and (F, 3) pelvis, in stance and flight."""
-    air = _air(both, len(root))
-    angles = stepped(values, pelvis, both, root, heading, fps)
+    air = _air([stood.one for stood in both], len(root))
     if not air:
-        return angles, root
+        return stepped(values, pelvis, both, root, heading, fps), root
     frames = np.concatenate([np.arange(flight.off, flight.down + 1) for flight in air])
     trunk = trunk_moment(body, values[frames])
-    centre = _in_world(trunk + legs_moment(body, angles[frames]), heading[frames])
+    centre = _in_world(trunk + legs_moment(body, values[frames]), heading[frames])
     for _ in range(_ROUNDS):
         moved = taken_up(root, air, centre, fps)
         over = np.maximum(moved[:, 1] - _highest(both, moved, heading, fps), 0)

@@ -13,10 +13,11 @@ from gmr.actionlets.travel.leg import Law, Leg, Placed, law
 from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.plan import Stance
 from gmr.actionlets.travel.sole import Sole, pitch_of, yaw_of
+from gmr.actionlets.travel.swinging import Air, in_air
 from gmr.actionlets.travel.turns import about_y, pitched, turned
 from gmr.editing.easing import smooth_step
 
-__all__ = ["Footing", "footing", "with_footprints"]
+__all__ = ["Footing", "Standing", "footing", "with_footprints"]
 
 Floats = NDArray[np.float64]
 
@@ -43,6 +44,8 @@ class Footing:
     hip: Floats
     """(F, 3) the hip, in the same way."""
     stances: tuple[Stance, ...]
+    air: Air
+    """Its frames in the air."""
     frames: NDArray[np.intp]
     """(n,) frames on the ground."""
     starts: NDArray[np.intp]
@@ -68,33 +71,22 @@ class Footing:
         arm = turned(pitched(self.pitch), point)
         return ground - arm[:, ::2], -arm[:, 1]
 
-    def stood(self, heading: Floats) -> tuple[Floats, Floats]:
-        """(n, 3) where the leg ends in the world, and (n, 3, 3) the foot in the frame of the (F,) headings.
-
-        A leg ends in its ankle; one whose ankle is rigid in the point of its sole that touches the ground,
-        and its foot is the nominal one.
-        """
-        facing = heading[self.frames]
-        yaw = self.yaw - facing
+    def standing(self, heading: Floats) -> Standing:
+        """Where the leg ends in its stances, under (F,) headings."""
+        on, facing = self.frames, heading[self.frames]
         point, ground = self.sole.contact(self.pitch)
         touch = self.place + level(ground, self.yaw)
+        hip, nominal = self.hip[on], self.nominal
         if self.leg.rigid:
-            return np.stack([touch[:, 0], np.zeros(len(touch)), touch[:, 1]], axis=1), self.nominal.foot[
-                self.frames
-            ]
+            end = np.stack([touch[:, 0], np.zeros(len(touch)), touch[:, 1]], axis=1)
+            length = _length(nominal.ankle[on] + turned(nominal.foot[on], point) - hip)
+            return Standing(self, end, nominal.foot[on], point, law(self.leg, point), length)
+        yaw = self.yaw - facing
         foot = about_y(yaw + _pivot(yaw, self.pitch)) @ pitched(self.pitch)
         arm = turned(foot, point)
         side = level(arm[:, ::2], facing)
-        return np.stack([touch[:, 0] - side[:, 0], -arm[:, 1], touch[:, 1] - side[:, 1]], axis=1), foot
-
-    def end(self) -> tuple[Floats, Law, Floats]:
-        """Where the leg ends: (n, 3) from the ankle, the law of that leg, and (n,) its nominal length."""
-        hip, ankle = self.hip[self.frames], self.nominal.ankle[self.frames]
-        if not self.leg.rigid:
-            return np.zeros_like(hip), self.leg.law, np.linalg.norm(ankle - hip, axis=1)
-        tip, _ = self.sole.contact(self.pitch)
-        nominal = ankle + turned(self.nominal.foot[self.frames], tip)
-        return tip, law(self.leg, tip), np.linalg.norm(nominal - hip, axis=1)
+        end = np.stack([touch[:, 0] - side[:, 0], -arm[:, 1], touch[:, 1] - side[:, 1]], axis=1)
+        return Standing(self, end, foot, np.zeros_like(end), self.leg.law, _length(nominal.ankle[on] - hip))
 
     def loads(self, fps: float) -> Floats:
         """(n,) share of the body that the foot carries: smoothly taken over and handed on.
@@ -114,7 +106,31 @@ class Footing:
         return replace(self, pitch=risen(self.leg, self.place, self.yaw, hip, self.pitch))
 
 
-def footing(leg: Leg, sole: Sole, nominal: Placed, hip: Floats, stances: Sequence[Stance]) -> Footing:
+@dataclass(frozen=True, eq=False, slots=True)
+class Standing:
+    """Where a leg ends in its stances: in its ankle; with a rigid ankle in the point of the sole that touches
+    the ground.
+
+    Args:
+        one: the leg, n frames on the ground.
+        end: (n, 3) in the world.
+        foot: (n, 3, 3) turn of the foot in the frame of the heading; of a rigid foot the nominal one.
+        tip: (n, 3) the end from the ankle, in the frame of the foot.
+        law: of the leg to that end.
+        length: (n,) nominal metres from the hip.
+    """
+
+    one: Footing
+    end: Floats
+    foot: Floats
+    tip: Floats
+    law: Law
+    length: Floats
+
+
+def footing(
+    leg: Leg, sole: Sole, nominal: Placed, hip: Floats, stances: Sequence[Stance], fps: float
+) -> Footing:
     """The stances of a leg, without footprints yet: they are all at the origin."""
     counts = np.array([stance.last - stance.first + 1 for stance in stances], np.intp)
     frames = [np.arange(stance.first, stance.last + 1) for stance in stances]
@@ -124,7 +140,8 @@ def footing(leg: Leg, sole: Sole, nominal: Placed, hip: Floats, stances: Sequenc
     shares = [np.linspace(0 if stance.lands else 1, 1, n) for stance, n in zip(stances, counts, strict=True)]
     over = np.concatenate(shares) if shares else np.empty(0)
     place, yaw = np.zeros((len(on), 2)), np.zeros(len(on))
-    return Footing(leg, sole, nominal, hip, tuple(stances), on, starts, over, pitch, place, yaw)
+    air = in_air(stances, len(hip), fps)
+    return Footing(leg, sole, nominal, hip, tuple(stances), air, on, starts, over, pitch, place, yaw)
 
 
 def with_footprints(one: Footing, ground: Floats, heading: Floats) -> Footing:
@@ -170,3 +187,7 @@ def _load(stance: Stance, fps: float) -> Floats:
     up = np.arange(count) / ramp if stance.lands else np.ones(count)
     down = np.arange(count)[::-1] / ramp if stance.leaves else np.ones(count)
     return smooth_step(np.minimum(up, down)) + 1e-9
+
+
+def _length(vectors: Floats) -> Floats:
+    return np.asarray(np.sqrt((vectors * vectors).sum(axis=1)), np.float64)

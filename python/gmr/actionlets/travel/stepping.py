@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.actionlets.travel.footing import Footing
+from gmr.actionlets.travel.footing import Footing, Standing
 from gmr.actionlets.travel.leg import leg_angles, place_foot, rigid_leg_angles, unlocked
 from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.sole import yaw_of
-from gmr.actionlets.travel.swinging import cleared, gaps, led_over, risen_share
+from gmr.actionlets.travel.swinging import cleared, led_over
 from gmr.actionlets.travel.turns import turned, turned_back
 
 __all__ = ["stepped"]
@@ -23,7 +23,7 @@ _LEG_TURNS = 0.8
 
 
 def stepped(
-    planned: Floats, pelvis: Floats, both: Sequence[Footing], root: Floats, heading: Floats, fps: float
+    planned: Floats, pelvis: Floats, both: Sequence[Standing], root: Floats, heading: Floats, fps: float
 ) -> Floats:
     """(F, D) the planned angles with legs that keep their feet where they belong.
 
@@ -39,29 +39,24 @@ def stepped(
         fps: frames a second.
     """
     found = planned.copy()
-    for one in both:
+    for stood in both:
+        one = stood.one
         columns = one.leg.columns
         plan = planned[:, columns]
         offsets = np.zeros_like(plan)
         on = one.frames
         if len(on):
-            offsets[on] = _on_ground(one, plan[on], pelvis[on], root[on], heading) - plan[on]
-        led_over(offsets, one.stances, fps)
-        new = plan + offsets
-        found[:, columns] = new
-        _swing_clear(found, one, pelvis, root, fps)
+            offsets[on] = _on_ground(stood, plan[on], pelvis[on], root[on], heading[on]) - plan[on]
+        led_over(offsets, one.air, fps)
+        found[:, columns] = plan + offsets
+        if len(one.air.frames):
+            _swing_clear(found, one, pelvis, root)
     return found
 
 
-def _swing_clear(found: Floats, one: Footing, pelvis: Floats, root: Floats, fps: float) -> None:
+def _swing_clear(found: Floats, one: Footing, pelvis: Floats, root: Floats) -> None:
     """Bends the legs in the air so that no foot touches the ground and no knee locks."""
-    leg = one.leg
-    between = gaps(one.stances, len(found))
-    if not between:
-        return
-    air = np.concatenate([np.arange(frames.start, frames.stop) for _, _, frames in between])
-    shares = [risen_share(before, after, at.stop - at.start, fps) for before, after, at in between]
-    rise = np.concatenate(shares)
+    leg, air = one.leg, one.air.frames
     angles = found[air]
     angles[:, leg.knee_column] = unlocked(angles[:, leg.knee_column])
     foot = place_foot(leg, angles)
@@ -69,7 +64,7 @@ def _swing_clear(found: Floats, one: Footing, pelvis: Floats, root: Floats, fps:
     up = turn[:, 1]
     heel, toe = foot.ankle + turned(foot.foot, leg.heel), foot.ankle + turned(foot.foot, leg.toe)
     height = root[air, 1]
-    lift = cleared((up * heel).sum(axis=1) + height, (up * toe).sum(axis=1) + height, rise)
+    lift = cleared((up * heel).sum(axis=1) + height, (up * toe).sum(axis=1) + height, one.air.rise)
     low = np.flatnonzero(lift > 0)
     if len(low):
         way = foot.ankle[low] + lift[low, None] * up[low]
@@ -79,16 +74,16 @@ def _swing_clear(found: Floats, one: Footing, pelvis: Floats, root: Floats, fps:
     found[air] = angles
 
 
-def _on_ground(one: Footing, planned: Floats, pelvis: Floats, root: Floats, heading: Floats) -> Floats:
+def _on_ground(stood: Standing, planned: Floats, pelvis: Floats, root: Floats, heading: Floats) -> Floats:
     """(n, K) angles of a leg that stands on its footprints."""
-    end, foot = one.stood(heading)
-    way = end - root
-    way[:, ::2] = level(way[:, ::2], -heading[one.frames])
+    one = stood.one
+    way = stood.end - root
+    way[:, ::2] = level(way[:, ::2], -heading)
     way = turned_back(pelvis, way)
     if one.leg.rigid:
-        yaw = one.yaw - heading[one.frames] - yaw_of(foot)
+        yaw = one.yaw - heading - yaw_of(stood.foot)
         planned = planned + np.outer(one.leg.hip_signs[2] * yaw, [0, 0, 1, 0])
-        return rigid_leg_angles(one.leg, way, one.end()[0], planned)
-    yaw = yaw_of(foot) - yaw_of(one.nominal.foot[one.frames])
+        return rigid_leg_angles(one.leg, way, stood.tip, planned)
+    yaw = yaw_of(stood.foot) - yaw_of(one.nominal.foot[one.frames])
     rotation = planned[:, 2] + one.leg.hip_signs[2] * _LEG_TURNS * yaw
-    return leg_angles(one.leg, way, rotation, pelvis.swapaxes(1, 2) @ foot)
+    return leg_angles(one.leg, way, rotation, pelvis.swapaxes(1, 2) @ stood.foot)

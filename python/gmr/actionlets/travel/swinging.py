@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gmr.actionlets.travel.plan import Stance
 
-__all__ = ["cleared", "gaps", "led_over", "risen_share", "slope"]
+__all__ = ["Air", "Edge", "cleared", "in_air", "led_over", "slope"]
 
 Floats = NDArray[np.float64]
 
@@ -29,19 +30,70 @@ _CLEARANCE = 0.012
 """Metres between ground and foot in the middle of a swing, at least."""
 
 
-def gaps(stances: Sequence[Stance], frame_count: int) -> list[tuple[Stance | None, Stance | None, slice]]:
-    """Where a foot is in the air: the stance before, the stance after, and the frames between them."""
-    befores, afters = [None, *stances], [*stances, None]
-    found = []
-    for before, after in zip(befores, afters, strict=True):
-        first = before.last + 1 if before else 0
-        end = after.first if after else frame_count
-        if end > first:
-            found.append((before, after, slice(first, end)))
-    return found
+@dataclass(frozen=True, eq=False, slots=True)
+class Edge:
+    """Where the stances on one side of some gaps end, seen from the air.
+
+    Args:
+        frames: (g, 3) the nearest frame on the ground of each gap, and the two behind it.
+        weights: (g, 3) of these frames, for the slope into the air, to second order.
+        away: (m,) how many frames each one in the air is away from the ground.
+        fade: (m,) share of an offset that is left there; 0 where the gap has no stance on this side.
+    """
+
+    frames: NDArray[np.intp]
+    weights: Floats
+    away: NDArray[np.intp]
+    fade: Floats
 
 
-def led_over(offsets: Floats, stances: Sequence[Stance], fps: float) -> None:
+@dataclass(frozen=True, eq=False, slots=True)
+class Air:
+    """A foot in the air: g gaps between its stances, m frames together.
+
+    Args:
+        frames: (m,) the frames.
+        counts: (g,) frames of each gap.
+        held: (g,) frames within which a correction fades.
+        edges: towards the stances before and after.
+        rise: (m,) share of its clearance that the foot has: up and down by ``x^2 (3 - 2x)`` in the first and
+            the second half of a gap, or over 0.2 s at the ends of the motion.
+    """
+
+    frames: NDArray[np.intp]
+    counts: NDArray[np.intp]
+    held: Floats
+    edges: tuple[Edge, Edge]
+    rise: Floats
+
+
+def in_air(stances: Sequence[Stance], frame_count: int, fps: float) -> Air:
+    """Where a foot is in the air, from its stances in time."""
+    lasts = np.array([-1, *(stance.last for stance in stances)], np.intp)
+    firsts = np.array([*(stance.first for stance in stances), frame_count], np.intp)
+    some = firsts - lasts > 1
+    lengths = np.array([stance.last - stance.first for stance in stances], np.intp)
+    behind = np.concatenate([[-1], lengths])[some], np.concatenate([lengths, [-1]])[some]
+    off, down = lasts[some], firsts[some]
+    counts = down - off - 1
+    begins = np.repeat(np.cumsum(counts) - counts, counts)
+    since = np.arange(counts.sum()) - begins + 1
+    until = np.repeat(counts, counts) + 1 - since
+    whole = (behind[0] >= 0) & (behind[1] >= 0)
+    held = np.where(whole, np.minimum(_HELD * fps, counts + 1), _HELD * fps)
+    half = np.repeat(np.where(whole, (counts + 1) / 2, _RISEN * fps), counts)
+    rise = np.ones(len(since))
+    edges = []
+    for away, length, frame, step in ((since, behind[0], off, -1), (until, behind[1], down, 1)):
+        stands = np.repeat(length >= 0, counts)
+        x = np.minimum(away / half, 1)
+        rise = rise * np.where(stands, x * x * (3 - 2 * x), 1)
+        faded = np.where(stands, np.minimum(away / np.repeat(held, counts), 1), 1)
+        edges.append(_edge(length, frame, step, away, faded))
+    return Air(np.repeat(off, counts) + since, counts, held, (edges[0], edges[1]), rise)
+
+
+def led_over(offsets: Floats, air: Air, fps: float) -> None:
     """Writes what a foot is moved by in the air, from what it is moved by on the ground, C1.
 
     The offset at the end of a stance fades as ``(1 + 2x)(1 - x)^2``, its speed as ``x (1 - x)^2``, both of
@@ -50,20 +102,19 @@ def led_over(offsets: Floats, stances: Sequence[Stance], fps: float) -> None:
 
     Args:
         offsets: (F, K), known where the foot stands; the rest is written.
-        stances: of this foot in time.
+        air: of this foot.
         fps: frames a second.
     """
-    for before, after, air in gaps(stances, len(offsets)):
-        frames = np.arange(air.start, air.stop)
-        held = min(_HELD * fps, len(frames) + 1) if before and after else _HELD * fps
-        found = np.zeros((len(frames), offsets.shape[1]))
-        if before:
-            stood = offsets[before.frames]
-            found += _fading(stood[-1], slope(stood, -1), frames - before.last, held, fps)
-        if after:
-            stands = offsets[after.frames]
-            found += _fading(stands[0], -slope(stands, 0), after.first - frames, held, fps)
-        offsets[air] = found
+    found = np.zeros((len(air.frames), offsets.shape[1]))
+    for edge in air.edges:
+        near = offsets[edge.frames]
+        speed = (edge.weights[:, :, None] * near).sum(axis=1)
+        most = np.minimum(air.held, _CARRIED * fps)[:, None]
+        window = np.minimum(most, _OVERSHOOT / (4 / 27) / np.maximum(np.abs(speed), 1e-9))
+        y = np.minimum(edge.away[:, None] / np.repeat(window, air.counts, axis=0), 1)
+        found += edge.fade[:, None] * np.repeat(near[:, 0], air.counts, axis=0)
+        found += y * (1 - y) ** 2 * np.repeat(window * speed, air.counts, axis=0)
+    offsets[air.frames] = found
 
 
 def slope(values: Floats, at: int) -> Floats:
@@ -86,27 +137,19 @@ def cleared(heel: Floats, toe: Floats, rise: Floats) -> Floats:
     Args:
         heel: (n,) height of the heel over the ground.
         toe: (n,) the same of the tip of the toes.
-        rise: (n,) how far it is to have risen, of 1; see :func:`risen_share`.
+        rise: (n,) how far it is to have risen, of 1; see :class:`Air`.
     """
     w = _CLEARANCE * rise
     short = w - (heel + toe) / 2 + np.hypot((heel - toe) / 2, w)
     return np.asarray(np.where(short <= -w, 0, np.where(short >= w, short, (short + w) ** 2 / (4 * w))))
 
 
-def risen_share(before: Stance | None, after: Stance | None, count: int, fps: float) -> Floats:
-    """(n,) share of its clearance that a foot has in the frames between two stances: up and down by
-    ``x^2 (3 - 2x)`` in the first and the second half, or over 0.2 s at the ends of the motion."""
-    half = (count + 1) / 2 if before and after else _RISEN * fps
-    frames = np.arange(1, count + 1)
-    up = np.minimum(frames / half, 1) if before else np.ones(count)
-    down = np.minimum(frames[::-1] / half, 1) if after else np.ones(count)
-    return np.asarray(up * up * (3 - 2 * up) * down * down * (3 - 2 * down), np.float64)
-
-
-def _fading(offset: Floats, speed: Floats, frames: NDArray[np.intp], held: float, fps: float) -> Floats:
-    """(n, K) an offset that would go on with a speed a frame, fading over the frames after it."""
-    x = np.minimum(frames / held, 1)[:, None]
-    window = np.minimum(min(held, _CARRIED * fps), _OVERSHOOT / (4 / 27) / np.maximum(np.abs(speed), 1e-9))
-    y = np.minimum(frames[:, None] / window, 1)
-    found: Floats = (1 + 2 * x) * (1 - x) ** 2 * offset + window * y * (1 - y) ** 2 * speed
-    return found
+def _edge(
+    length: NDArray[np.intp], frame: NDArray[np.intp], step: int, away: NDArray[np.intp], x: Floats
+) -> Edge:
+    """An edge of gaps whose stances are ``length`` frames longer than one (-1: there is none)."""
+    behind = np.minimum(np.arange(3), np.maximum(length, 0)[:, None])
+    frames = np.where(length[:, None] >= 0, frame[:, None] + step * behind, 0)
+    long, short = np.array([1.5, -2.0, 0.5]), np.array([1.0, -1.0, 0.0])
+    weights = np.where(length[:, None] > 1, long, np.where(length[:, None] == 1, short, 0.0))
+    return Edge(frames, weights, away, (1 + 2 * x) * (1 - x) ** 2)
