@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gmr.actionlets.travel.by_feet import carried_by_feet
-from gmr.actionlets.travel.flight import Flight, falling, flights, taken_up
+from gmr.actionlets.travel.flight import Flights, falling, flights, taken_up
 from gmr.actionlets.travel.footing import Footing, Standing, footing, with_footprints
 from gmr.actionlets.travel.height import held_up, kept_bend, lowered, room
 from gmr.actionlets.travel.leg import BENT, Placed, place_foot
@@ -158,14 +158,15 @@ def _balance(body: Body, values: Floats, both: Sequence[Footing]) -> Floats:
     """(F, 2) the centre of mass of the planned body from its pelvis, where flights begin and end; 0
     elsewhere."""
     found = np.zeros((len(values), 2))
-    ends = [frame for flight in _air(both, len(values)) for frame in (flight.off, flight.down)]
-    if ends:
+    air = _air(both, len(values))
+    ends = np.concatenate([air.off, air.down])
+    if len(ends):
         posed = values[ends]
         found[ends] = (trunk_moment(body, posed) + legs_moment(body, posed))[:, ::2]
     return found
 
 
-def _air(both: Sequence[Footing], count: int) -> list[Flight]:
+def _air(both: Sequence[Footing], count: int) -> Flights:
     on_ground = np.zeros(count, bool)
     for one in both:
         on_ground[one.frames] = True
@@ -221,9 +222,9 @@ def _settled(
 ) -> tuple[Floats, Floats]:
     """(F, D) angles and (F, 3) pelvis, in stance and flight."""
     air = _air([stood.one for stood in both], len(root))
-    if not air:
+    if not len(air):
         return stepped(values, pelvis, both, root, heading, fps), root
-    frames = np.concatenate([np.arange(flight.off, flight.down + 1) for flight in air])
+    frames = air.frames
     trunk = trunk_moment(body, values[frames])
     centre = _in_world(trunk + legs_moment(body, values[frames]), heading[frames])
     for _ in range(_ROUNDS):

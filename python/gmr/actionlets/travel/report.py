@@ -207,16 +207,17 @@ def _flights(
     times: Floats,
     fps: float,
 ) -> tuple[FlightFound, ...]:
+    air = flights(on_ground)
     found = []
-    for flight in flights(on_ground):
-        at = flight.frames
+    for off, down in zip(air.off.tolist(), air.down.tolist(), strict=True):
+        at = slice(off, down + 1)
         centre = trunk_moment(body, angles[at]) + legs_moment(body, angles[at])
         path = pelvis[at] + _in_world(centre, heading[at])
-        time = times[at] - times[flight.off]
+        time = times[at] - times[off]
         fall = path + np.outer(GRAVITY / 2 * time**2, [0.0, 1.0, 0.0])
         straight = fall[0] + (time / time[-1])[:, None] * (fall[-1] - fall[0])
-        off = float(np.linalg.norm(fall - straight, axis=1).max())
-        found.append(FlightFound(float(times[flight.off]), float(times[flight.down]), 1000 * off))
+        most = float(np.linalg.norm(fall - straight, axis=1).max())
+        found.append(FlightFound(float(times[off]), float(times[down]), 1000 * most))
     return tuple(found)
 
 

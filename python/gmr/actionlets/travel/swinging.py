@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.actionlets.travel.plan import Stance
+from gmr.actionlets.travel.slopes import slopes, spread
 
-__all__ = ["Air", "Edge", "cleared", "in_air", "led_over", "slope"]
+__all__ = ["Air", "Edge", "cleared", "in_air", "led_over"]
 
 Floats = NDArray[np.float64]
+Frames = NDArray[np.intp]
 
 _HELD = 0.5
 """Seconds within which a correction fades in the air."""
@@ -32,18 +34,20 @@ _CLEARANCE = 0.012
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Edge:
-    """Where the stances on one side of some gaps end, seen from the air.
+    """Where the stances on one side of some gaps end.
 
     Args:
-        frames: (g, 3) the nearest frame on the ground of each gap, and the two behind it.
-        weights: (g, 3) of these frames, for the slope into the air, to second order.
+        frames: (g,) the nearest frame on the ground of each gap.
+        inward: -1 where the stances end there, 1 where they begin.
+        lengths: (g,) frames of each stance less one; -1: there is none.
         away: (m,) how many frames each one in the air is away from the ground.
-        fade: (m,) share of an offset that is left there; 0 where the gap has no stance on this side.
+        fade: (m,) share of an offset that is left there; 0 where there is no stance.
     """
 
-    frames: NDArray[np.intp]
-    weights: Floats
-    away: NDArray[np.intp]
+    frames: Frames
+    inward: int
+    lengths: Frames
+    away: Frames
     fade: Floats
 
 
@@ -60,8 +64,8 @@ class Air:
             the second half of a gap, or over 0.2 s at the ends of the motion.
     """
 
-    frames: NDArray[np.intp]
-    counts: NDArray[np.intp]
+    frames: Frames
+    counts: Frames
     held: Floats
     edges: tuple[Edge, Edge]
     rise: Floats
@@ -73,23 +77,23 @@ def in_air(stances: Sequence[Stance], frame_count: int, fps: float) -> Air:
     firsts = np.array([*(stance.first for stance in stances), frame_count], np.intp)
     some = firsts - lasts > 1
     lengths = np.array([stance.last - stance.first for stance in stances], np.intp)
-    behind = np.concatenate([[-1], lengths])[some], np.concatenate([lengths, [-1]])[some]
+    before, after = np.concatenate([[-1], lengths])[some], np.concatenate([lengths, [-1]])[some]
     off, down = lasts[some], firsts[some]
     counts = down - off - 1
-    begins = np.repeat(np.cumsum(counts) - counts, counts)
-    since = np.arange(counts.sum()) - begins + 1
-    until = np.repeat(counts, counts) + 1 - since
-    whole = (behind[0] >= 0) & (behind[1] >= 0)
+    since = spread(counts) + 1
+    whole = (before >= 0) & (after >= 0)
     held = np.where(whole, np.minimum(_HELD * fps, counts + 1), _HELD * fps)
     half = np.repeat(np.where(whole, (counts + 1) / 2, _RISEN * fps), counts)
     rise = np.ones(len(since))
     edges = []
-    for away, length, frame, step in ((since, behind[0], off, -1), (until, behind[1], down, 1)):
+    sides = ((since, before, off, -1), (np.repeat(counts, counts) + 1 - since, after, down, 1))
+    for away, length, frames, inward in sides:
         stands = np.repeat(length >= 0, counts)
         x = np.minimum(away / half, 1)
         rise = rise * np.where(stands, x * x * (3 - 2 * x), 1)
-        faded = np.where(stands, np.minimum(away / np.repeat(held, counts), 1), 1)
-        edges.append(_edge(length, frame, step, away, faded))
+        x = np.minimum(away / np.repeat(held, counts), 1)
+        fade = np.where(stands, (1 + 2 * x) * (1 - x) ** 2, 0)
+        edges.append(Edge(np.clip(frames, 0, frame_count - 1), inward, length, away, fade))
     return Air(np.repeat(off, counts) + since, counts, held, (edges[0], edges[1]), rise)
 
 
@@ -107,23 +111,13 @@ def led_over(offsets: Floats, air: Air, fps: float) -> None:
     """
     found = np.zeros((len(air.frames), offsets.shape[1]))
     for edge in air.edges:
-        near = offsets[edge.frames]
-        speed = (edge.weights[:, :, None] * near).sum(axis=1)
+        speed = -edge.inward * slopes(offsets, edge.frames, edge.inward, edge.lengths)
         most = np.minimum(air.held, _CARRIED * fps)[:, None]
         window = np.minimum(most, _OVERSHOOT / (4 / 27) / np.maximum(np.abs(speed), 1e-9))
         y = np.minimum(edge.away[:, None] / np.repeat(window, air.counts, axis=0), 1)
-        found += edge.fade[:, None] * np.repeat(near[:, 0], air.counts, axis=0)
+        found += edge.fade[:, None] * np.repeat(offsets[edge.frames], air.counts, axis=0)
         found += y * (1 - y) ** 2 * np.repeat(window * speed, air.counts, axis=0)
     offsets[air.frames] = found
-
-
-def slope(values: Floats, at: int) -> Floats:
-    """(K,) change of (n, K) values a frame at the first (0) or the last (-1) of them, to second order."""
-    if at == -1:
-        return -slope(values[::-1], 0)
-    if len(values) < 3:
-        return np.asarray(values[-1] - values[0], np.float64)
-    return np.asarray(-1.5 * values[0] + 2 * values[1] - 0.5 * values[2], np.float64)
 
 
 def cleared(heel: Floats, toe: Floats, rise: Floats) -> Floats:
@@ -142,14 +136,3 @@ def cleared(heel: Floats, toe: Floats, rise: Floats) -> Floats:
     w = _CLEARANCE * rise
     short = w - (heel + toe) / 2 + np.hypot((heel - toe) / 2, w)
     return np.asarray(np.where(short <= -w, 0, np.where(short >= w, short, (short + w) ** 2 / (4 * w))))
-
-
-def _edge(
-    length: NDArray[np.intp], frame: NDArray[np.intp], step: int, away: NDArray[np.intp], x: Floats
-) -> Edge:
-    """An edge of gaps whose stances are ``length`` frames longer than one (-1: there is none)."""
-    behind = np.minimum(np.arange(3), np.maximum(length, 0)[:, None])
-    frames = np.where(length[:, None] >= 0, frame[:, None] + step * behind, 0)
-    long, short = np.array([1.5, -2.0, 0.5]), np.array([1.0, -1.0, 0.0])
-    weights = np.where(length[:, None] > 1, long, np.where(length[:, None] == 1, short, 0.0))
-    return Edge(frames, weights, away, (1 + 2 * x) * (1 - x) ** 2)
