@@ -24,6 +24,7 @@ from gmr.quaternions import rotated
 Floats = NDArray[np.float64]
 
 DETAILED, PAPER = Body.of(), Body.of(detailed=False)
+STILL = np.array([[0.0, 0.0]])
 few = settings(max_examples=20, deadline=None)
 
 walks = st.tuples(st.floats(0.3, 2.5), st.floats(-np.pi, np.pi), st.just(False))
@@ -156,6 +157,19 @@ def test_finer_frames_make_smaller_steps_of_velocity(speed: float, turn_rate: fl
     assert steps[1] < 0.6 * steps[0]
 
 
+def test_the_report_tells_how_fast_the_planned_feet_go() -> None:
+    """A leg without knee that swings by the angle of a pendulum passes below the pelvis at l d(sin)/dt."""
+    times = np.arange(121) / 120
+    angles = np.zeros((121, DETAILED.dof_count))
+    angles[:, DETAILED.column("left_hip.flexion")] = 0.2 - 0.4 * times
+    angles[:, DETAILED.column("left_ankle.flexion")] = -(0.2 - 0.4 * times)
+    found = carried(DETAILED, angles, Plan({"left": np.array([[0.0, 1.0]])}, np.array([[0.0, 0.3]]), STILL))
+    length = -DETAILED.skeleton.offsets[
+        [DETAILED.skeleton.names.index(f"left_{j}") for j in ("knee", "ankle")], 1
+    ]
+    assert found.report.feet_speed == pytest.approx(2 * np.sin(0.2) * length.sum(), rel=1e-3)
+
+
 def test_a_walk_is_a_walk_by_gmr_s_own_measures() -> None:
     found = travelled(DETAILED, 1.3, np.radians(30), False)
     moving = posing.motion(DETAILED, found.angles, found.root, found.heading, 120)
@@ -213,7 +227,6 @@ def acted(tracks: dict[str, list[tuple[float, float]]], plan: Plan, body: Body =
     return carried(body, angles, plan)
 
 
-STILL = np.array([[0.0, 0.0]])
 BOTH = {side: np.array([[0.0, 3.0]]) for side in ("left", "right")}
 
 

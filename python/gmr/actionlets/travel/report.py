@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,7 @@ from gmr.actionlets.travel.leg import place_foot
 from gmr.actionlets.travel.legs import legs_of, pelvis_shift, pelvis_turn
 from gmr.actionlets.travel.mass import legs_moment, trunk_moment
 from gmr.actionlets.travel.path import level
-from gmr.actionlets.travel.plan import SIDES, Planned, asked, stances
+from gmr.actionlets.travel.plan import SIDES, Planned, Stance, asked, stances
 from gmr.actionlets.travel.turns import turned
 
 if TYPE_CHECKING:
@@ -66,6 +66,8 @@ class Report:
     Args:
         speed_asked: mean, m/s.
         speed: mean of the root's speed forward, m/s.
+        feet_speed: mean speed at which the planned feet pass below the pelvis while they are on the ground,
+            m/s; where it is not the speed asked, legs are corrected.
         turn_rate_asked_deg: mean, degrees a second to the left.
         turn_rate_deg: of the heading.
         stances: in time.
@@ -77,6 +79,7 @@ class Report:
 
     speed_asked: float
     speed: float
+    feet_speed: float
     turn_rate_asked_deg: float
     turn_rate_deg: float
     stances: tuple[StanceFound, ...]
@@ -96,12 +99,13 @@ class Report:
         return max((flight.off_mm for flight in self.flights), default=0.0)
 
     def __str__(self) -> str:
+        pivot = max((stance.pivot_deg for stance in self.stances), default=0.0)
         lines = [
-            f"speed {self.speed:.3f} m/s, asked {self.speed_asked:.3f}; "
-            f"turn rate {self.turn_rate_deg:.1f} degrees a second, asked {self.turn_rate_asked_deg:.1f}",
-            f"{len(self.stances)} stances slide {self.slide_mm:.2f} mm at most and pivot "
-            f"{max((s.pivot_deg for s in self.stances), default=0.0):.1f} degrees at most; "
-            f"lowest point of the feet {self.lowest_mm:.2f} mm",
+            f"speed {self.speed:.3f} m/s, asked {self.speed_asked:.3f}, of the planned feet "
+            f"{self.feet_speed:.3f}; turn rate {self.turn_rate_deg:.1f} degrees a second, "
+            f"asked {self.turn_rate_asked_deg:.1f}",
+            f"{len(self.stances)} stances slide {self.slide_mm:.2f} mm at most and pivot {pivot:.1f} degrees "
+            f"at most; lowest point of the feet {self.lowest_mm:.2f} mm",
             f"{len(self.flights)} flights leave the parabola by {self.off_mm:.2f} mm at most",
         ]
         for what, found in (("corrected by", self.corrections_deg), ("beyond its range by", self.beyond_deg)):
@@ -163,6 +167,7 @@ def measured(
     return Report(
         float(asked(plan.speed, times, "speed").mean()),
         float(ways / span),
+        _feet_speed(body, planned, every, fps),
         float(np.degrees(asked(plan.turn_rate, times, "turn_rate").mean())),
         float(np.degrees(heading[-1] - heading[0]) / span),
         tuple(found),
@@ -188,6 +193,19 @@ def _feet(
         ahead = turned(turn, foot.foot[:, :, 2])
         yaws.append(heading + np.arctan2(ahead[:, 0], ahead[:, 2]))
     return heels, toes, yaws
+
+
+def _feet_speed(body: Body, planned: Floats, every: Sequence[Stance], fps: float) -> float:
+    """Mean speed backwards of the lower of heel and toes of planned feet on the ground, from the pelvis."""
+    still = np.zeros(len(planned))
+    heels, toes, _ = _feet(body, planned, np.zeros((len(planned), 3)), still)
+    ways, steps = 0.0, 0
+    for stance in every:
+        heel, toe = heels[stance.leg][stance.frames], toes[stance.leg][stance.frames]
+        lower = heel[1:, 1] + heel[:-1, 1] < toe[1:, 1] + toe[:-1, 1]
+        ways += float(np.where(lower, -np.diff(heel[:, 2]), -np.diff(toe[:, 2])).sum())
+        steps += stance.last - stance.first
+    return ways * fps / steps if steps else 0.0
 
 
 def _slide(heel: Floats, toe: Floats) -> float:
