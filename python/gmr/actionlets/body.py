@@ -11,25 +11,28 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gmr.actionlets.dofs import DETAILED, PAPER, Dof
-from gmr.actionlets.proportions import Foot, Segment, sizes
+from gmr.actionlets.proportions import Foot, Segment, segments_of, sizes, skeleton_of, stature_of
 from gmr.arrays import read_only
 from gmr.channels import ChannelLayout
 from gmr.errors import ActionletError
 from gmr.listing import quoted
 from gmr.skeleton import Skeleton
 
+if TYPE_CHECKING:
+    from gmr.motion import Motion
+
 __all__ = ["Body", "Dof", "Foot", "Segment"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Body:
-    """A body of some height and build; make one with :meth:`of`.
+    """A body of some height and build; make one with :meth:`of` or :meth:`like`.
 
     Args:
         name: ``"paper"`` (22 degrees of freedom) or ``"detailed"`` (40).
@@ -81,6 +84,32 @@ class Body:
             size.percentile,
             size.foot,
             size.segments,
+        )
+
+    @classmethod
+    def like(cls, measured: Motion | Skeleton, sex: str = "average", detailed: bool = True) -> Body:
+        """A body with the lengths of a measured skeleton; see :mod:`gmr.actionlets.likeness`.
+
+        Args:
+            measured: a motion, or a skeleton in metres, of a body that gmr knows.
+            sex: whose masses, and whose proportions where nothing is measured.
+            detailed: as in :meth:`of`.
+
+        Raises:
+            ActionletError: the body is not found, its unit is not known, or it is no adult's size.
+        """
+        from gmr.actionlets.likeness import lengths_like
+
+        height, lengths = lengths_like(measured, sex)
+        return cls(
+            "detailed" if detailed else "paper",
+            DETAILED if detailed else PAPER,
+            skeleton_of(lengths),
+            height,
+            sex,
+            100 * stature_of(sex).cdf(height),
+            lengths.foot,
+            segments_of(lengths, sex),
         )
 
     @property

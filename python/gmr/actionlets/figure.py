@@ -51,9 +51,11 @@ def _sided(side: str) -> list[Limb]:
     ]
 
 
+_SHOULDERS = (("left_shoulder", 0.03), ("right_shoulder", 0.03))
+
 LIMBS: tuple[Limb, ...] = (
-    Limb("", (("left_hip", 0.05), ("right_hip", 0.05), ("waist", 0.055))),
-    Limb("", (("waist", 0.055), ("chest", 0.062), ("left_shoulder", 0.03), ("right_shoulder", 0.03))),
+    Limb("", (("left_hip", 0.05), ("right_hip", 0.05), ("left_waist", 0.045), ("right_waist", 0.045))),
+    Limb("", (("left_waist", 0.045), ("right_waist", 0.045), ("chest", 0.062), *_SHOULDERS)),
     Limb("", (("neck", 0.028), ("chin", 0.03))),
     Limb("", (("chin", 0.042), ("crown", 0.05))),
     *_sided("left"),
@@ -145,7 +147,10 @@ def _trunk(body: Anatomy, places: Mapping[str, Floats], height: float) -> dict[s
     else:
         shoulders = places.get("neck", hips)
     neck = places.get("neck", shoulders)
-    found["waist"] = hips + 0.28 * (shoulders - hips)
+    across = 0.5 * (places["left_hip"] - places["right_hip"])
+    across = across * (0.035 * height / np.linalg.norm(across, axis=-1, keepdims=True))
+    found["left_waist"] = hips + 0.3 * (shoulders - hips) + across
+    found["right_waist"] = found["left_waist"] - 2 * across
     found["chest"] = hips + 0.72 * (shoulders - hips)
     found["neck"] = neck
     top = body.tip("neck") if "neck" in body.joints else shoulders + 0.5 * (shoulders - hips)

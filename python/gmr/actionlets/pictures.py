@@ -221,6 +221,7 @@ def _body(
         if not points:
             continue
         depth = float(np.mean([deep[name][frame] for name, _ in points]))
+        depth -= 0.1 * height * (points[0][0] == "neck")  # the head hides it
         circles = np.array([[*at(*flat[name][frame]), radius * _SCALE] for name, radius in points])
         hull = outline(circles)
         d = "L".join(f"{x:.1f} {y:.1f}" for x, y in hull)

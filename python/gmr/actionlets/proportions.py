@@ -18,7 +18,17 @@ from gmr.actionlets.dofs import SIDES, body_data
 from gmr.errors import ActionletError
 from gmr.skeleton import End, Skeleton
 
-__all__ = ["Foot", "Lengths", "Segment", "Sizes", "segments_of", "sizes", "skeleton_of", "stature_of"]
+__all__ = [
+    "Foot",
+    "Lengths",
+    "Segment",
+    "Sizes",
+    "lengths_of",
+    "segments_of",
+    "sizes",
+    "skeleton_of",
+    "stature_of",
+]
 
 Floats = NDArray[np.float64]
 Vector = tuple[float, float, float]
@@ -92,7 +102,6 @@ class Lengths:
 
     Args:
         hip: of a hip joint from the midline.
-        hip_drop: of the hip joints below the pelvis.
         pelvis: from pelvis to waist.
         trunk: from waist to the base of the neck.
         head: from there to the top of the head.
@@ -101,7 +110,6 @@ class Lengths:
     """
 
     hip: float
-    hip_drop: float
     pelvis: float
     trunk: float
     head: float
@@ -138,10 +146,7 @@ class Sizes:
 
 def sizes(height: float | None, sex: str, percentile: float | None) -> Sizes:
     """The sizes of a body of a stature, or of a percentile of it; see :meth:`gmr.actionlets.Body.of`."""
-    if sex not in _SEXES:
-        raise ActionletError(f"sex={sex!r}: give one of {', '.join(_SEXES)}")
-    mean, spread = _mixed(sex, lambda entry: np.array(entry["stature"]))
-    stature = NormalDist(float(mean), float(spread))
+    stature = stature_of(sex)
     if percentile is not None:
         if height is not None:
             raise ActionletError(
@@ -151,13 +156,7 @@ def sizes(height: float | None, sex: str, percentile: float | None) -> Sizes:
             raise ActionletError(f"percentile={percentile}: give more than 0 and less than 100")
         height = stature.inv_cdf(percentile / 100)
     height = _DEFAULT if height is None else float(height)
-    low, high = body_data("proportions.toml")["limits"]["height"]
-    if not (math.isfinite(height) and low <= height <= high):
-        raise ActionletError(
-            f"height={height:g} m: the proportions are those of adults; give {low} to {high} metres, or take "
-            "a measured skeleton, Body.like(motion)"
-        )
-    found = _lengths(height, sex)
+    found = lengths_of(height, sex)
     return Sizes(
         height,
         100 * stature.cdf(height),
@@ -168,8 +167,29 @@ def sizes(height: float | None, sex: str, percentile: float | None) -> Sizes:
     )
 
 
+def lengths_of(height: float, sex: str) -> Lengths:
+    """The lengths of a body of a stature in metres.
+
+    Raises:
+        ActionletError: it is no adult's stature.
+    """
+    low, high = body_data("proportions.toml")["limits"]["height"]
+    if not (math.isfinite(height) and low <= height <= high):
+        raise ActionletError(
+            f"height={height:g} m: the proportions are those of adults; give {low} to {high} metres, or take "
+            "a measured skeleton, Body.like(motion)"
+        )
+    return _lengths(height, sex)
+
+
 def stature_of(sex: str) -> NormalDist:
-    """Distribution of the stature, metres."""
+    """Distribution of the stature, metres.
+
+    Raises:
+        ActionletError: an unknown sex.
+    """
+    if sex not in _SEXES:
+        raise ActionletError(f"sex={sex!r}: give one of {', '.join(_SEXES)}")
     mean, spread = _mixed(sex, lambda entry: np.array(entry["stature"]))
     return NormalDist(float(mean), float(spread))
 
@@ -184,7 +204,6 @@ def _lengths(height: float, sex: str) -> Lengths:
     heel, ball, hip = (delp[key] / delp["height"] for key in ("heel", "ball", "hip"))
     shares = Lengths(
         hip=hip,
-        hip_drop=0.0,
         pelvis=pelvis,
         trunk=trunk - pelvis,
         head=head,
@@ -227,7 +246,7 @@ def _offset(part: str, aside: float, lengths: Lengths) -> Vector:
         "elbow": (0.0, -lengths.upper_arm, 0.0),
         "wrist": (0.0, -lengths.forearm, 0.0),
         "wrist_end": (0.0, -lengths.hand, 0.0),
-        "hip": (aside * lengths.hip, -lengths.hip_drop, 0.0),
+        "hip": (aside * lengths.hip, 0.0, 0.0),
         "knee": (0.0, -lengths.thigh, 0.0),
         "ankle": (0.0, -lengths.shank, 0.0),
         "ankle_end": (0.0, -lengths.ankle_height, lengths.toe),
