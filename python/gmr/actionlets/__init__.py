@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from gmr.actionlets.dofs import Dof
     from gmr.actionlets.measured import Measured
     from gmr.actionlets.pictures import film_strip
+    from gmr.actionlets.reading import read
     from gmr.actionlets.score import Score
     from gmr.actionlets.track import Piece, Track
 
@@ -29,6 +30,7 @@ __all__ = [
     "Track",
     "film_strip",
     "posing",
+    "read",
     "travel",
 ]
 
@@ -41,6 +43,7 @@ _HOMES = {
     "Score": "gmr.actionlets.score",
     "Track": "gmr.actionlets.track",
     "film_strip": "gmr.actionlets.pictures",
+    "read": "gmr.actionlets.reading",
 }
 _MODULES = frozenset({"posing", "travel"})
 

@@ -98,11 +98,9 @@ class Anatomy:
 
     def tip(self, joint: str) -> Floats:
         """(F, 3) of the farthest end below a joint of the body; the joint's own without one."""
-        top = self.joints[joint]
-        below = _below(self.motion.skeleton, top)
-        if not below:
-            return self.all_places[:, top]
-        away = np.linalg.norm(self.all_places[0, below] - self.all_places[0, top], axis=-1)
+        start, named = self.joints[joint], self.parts[PARTS[joint]][0]
+        below = [named, *_below(self.motion.skeleton, named)]
+        away = np.linalg.norm(self.all_places[0, below] - self.all_places[0, start], axis=-1)
         return self.all_places[:, below[int(away.argmax())]]
 
 

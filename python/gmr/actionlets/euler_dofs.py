@@ -4,6 +4,10 @@ A turn ``R_f R_a R_r`` about three different axes is also that of ``(f + pi, pi 
 may have whole turns more. No joint's rotation about its bone ranges over a half turn, so at most one of these
 is in range. Where the sideways angle is a right one, as with the arms of a T-pose, flexion and rotation turn
 about one axis: the pose tells their sum alone, and each frame takes the angles nearest to the frame before.
+
+A course that cannot stay in range is the cheapest way through the readings of all frames: it pays for the
+squares of its steps and of what it lacks to be in range. Source: Viterbi, "Error bounds for convolutional
+codes and an asymptotically optimum decoding algorithm", IEEE Trans. Inf. Theory 13 (1967) 260.
 """
 
 from __future__ import annotations
@@ -22,36 +26,59 @@ Floats = NDArray[np.float64]
 
 _EXACT = 1e-7
 """Radians by which a reading may leave its range for rounding's sake."""
+_OUTSIDE = 0.2
+"""Cost of a second out of range by a radian, in squared radians of steps."""
+_LEAP = 100.0
+"""Cost of a step of more than a half turn: no joint turns so far between two frames."""
+_TURNS = 2 * np.pi * np.array([[i, 0, k] for i in (-1, 0, 1) for k in (-1, 0, 1)], np.float64)
 
 
-def angles_of(rotations: Floats, dofs: Sequence[Dof]) -> Floats:
+def angles_of(rotations: Floats, dofs: Sequence[Dof], frame_time: float) -> Floats:
     """Angles of the turns of a joint.
 
     Args:
         rotations: (F, 4) unit quaternions.
         dofs: three of one joint, in the order of their turns, about three different axes.
+        frame_time: seconds.
 
     Returns:
         (F, 3) radians: in every frame those in the ranges where all frames have such; else a continuous
-        course, the one of the two that leaves the ranges least, in whole turns nearest to them.
+        course that leaves the ranges as little and as shortly as its continuity allows.
     """
     axes = np.array([[int(np.abs(dof.axis).argmax()) for dof in dofs]], np.uint8)
     signs = np.array([float(np.sum(dof.axis)) for dof in dofs])
     turns = np.ascontiguousarray(rotations[:, None])
     course: Floats = np.radians(_core.quaternions_to_euler(turns, axes)[:, 0]) * signs
     low, high = (np.array([getattr(dof, end) for dof in dofs]) for end in ("low", "high"))
-    bounded = np.isfinite(low) & np.isfinite(high)
-    middle = np.where(bounded, (np.where(bounded, low, 0.0) + np.where(bounded, high, 0.0)) / 2, 0.0)
-    readings = [course, _other(course)]
-    if bounded.all():
-        near = [_near(reading, middle) for reading in readings]
-        first, second = (np.all((one >= low - _EXACT) & (one <= high + _EXACT), axis=-1) for one in near)
-        if (first | second).all():
-            return np.where(first[:, None], near[0], near[1])
-    whole = [_shifted(reading, middle) for reading in readings]
-    excess = [np.maximum(low - one, 0.0) + np.maximum(one - high, 0.0) for one in whole]
-    costs = [float((one**2).sum()) for one in excess]
-    return whole[int(np.argmin(costs))]
+    if not np.isfinite(low).all():
+        return _shifted(course, np.zeros(3))
+    middle = (low + high) / 2
+    near = [_near(reading, middle) for reading in (course, _other(course))]
+    first, second = (np.all((one >= low - _EXACT) & (one <= high + _EXACT), axis=-1) for one in near)
+    if (first | second).all():
+        return np.where(first[:, None], near[0], near[1])
+    whole = [_shifted(reading, middle) for reading in (course, _other(course))]
+    readings = np.concatenate([reading[:, None] + _TURNS for reading in whole], axis=1)
+    excess = np.maximum(low - readings, 0.0) + np.maximum(readings - high, 0.0)
+    return _cheapest(readings, _OUTSIDE * frame_time * (excess**2).sum(axis=-1))
+
+
+def _cheapest(readings: Floats, costs: Floats) -> Floats:
+    """(F, 3) the course through (F, R, 3) readings that pays least: their (F, R) costs and its steps."""
+    count, choices = costs.shape
+    before = np.zeros((count, choices), np.intp)
+    total = costs[0]
+    for frame in range(1, count):
+        steps = readings[frame, None] - readings[frame - 1, :, None]
+        squares = steps * steps
+        paid = squares.sum(axis=-1) + _LEAP * (squares > np.pi**2).any(axis=-1) + total[:, None]
+        before[frame] = paid.argmin(axis=0)
+        total = paid[before[frame], np.arange(choices)] + costs[frame]
+    chosen = np.empty(count, np.intp)
+    chosen[-1] = total.argmin()
+    for frame in range(count - 1, 0, -1):
+        chosen[frame - 1] = before[frame, chosen[frame]]
+    return readings[np.arange(count), chosen]
 
 
 def _other(angles: Floats) -> Floats:

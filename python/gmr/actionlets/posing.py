@@ -23,7 +23,7 @@ from gmr.quaternions import about, multiply, rotated
 if TYPE_CHECKING:
     from gmr.actionlets.body import Body
 
-__all__ = ["centre_of_mass", "motion", "rotations", "turning"]
+__all__ = ["angles", "centre_of_mass", "motion", "rotations", "turning"]
 
 Floats = NDArray[np.float64]
 
@@ -96,6 +96,24 @@ def motion(
         unit=1.0,
         name=name,
     )
+
+
+def angles(
+    body: Body,
+    moving: Motion,
+    root: ArrayLike | None = None,
+    heading: ArrayLike | None = None,
+    *,
+    rest_frame: int | None = None,
+) -> Floats:
+    """The way back: (F, D) angles of a body in any motion that shows one; see
+    :func:`gmr.actionlets.reading.read`, which tells root and heading too.
+
+    Within the ranges of motion ``angles(body, motion(body, a, root, heading), root, heading)`` is ``a``.
+    """
+    from gmr.actionlets.reading import read
+
+    return read(body, moving, root, heading, rest_frame=rest_frame).angles
 
 
 def centre_of_mass(body: Body, moving: Motion) -> Floats:

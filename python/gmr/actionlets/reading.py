@@ -23,7 +23,7 @@ from gmr.forest import home
 from gmr.motion import Motion
 from gmr.quaternions import about, conjugate, multiply, rotated
 
-__all__ = ["Reading", "angles", "read"]
+__all__ = ["Reading", "read"]
 
 Floats = NDArray[np.float64]
 
@@ -57,18 +57,6 @@ class Reading:
     def motion(self, body: Body | None = None) -> Motion:
         """The motion of the body that was read, or of another one."""
         return posed(body or self.body, self.angles, self.root, self.heading, self.fps, name=self.name)
-
-
-def angles(
-    body: Body,
-    motion: Motion,
-    root: ArrayLike | None = None,
-    heading: ArrayLike | None = None,
-    *,
-    rest_frame: int | None = None,
-) -> Floats:
-    """(F, D) the angles alone; see :func:`read`."""
-    return read(body, motion, root, heading, rest_frame=rest_frame).angles
 
 
 def read(
@@ -113,7 +101,7 @@ def read(
         places = hips * (body_leg(body) / leg_of(found))
     values = np.zeros((len(places), body.dof_count))
     for joint in _turning_joints(body):
-        _write(values, body, joint, local[joint], hinges.get(joint))
+        _write(values, body, joint, local[joint], hinges.get(joint), shown.frame_time)
     facing, path = _root(body, values, local["pelvis"], places, root, heading, shown.frame_time)
     fps = 1 / shown.frame_time if shown.frame_time > 0 else 1.0
     return Reading(body, values, path, facing, fps, said, motion.name)
@@ -164,14 +152,16 @@ def _local(body: Body, world: Mapping[str, Floats], hinges: Mapping[str, Floats]
     return found
 
 
-def _write(values: Floats, body: Body, joint: str, turns: Floats, hinge: Floats | None) -> None:
+def _write(
+    values: Floats, body: Body, joint: str, turns: Floats, hinge: Floats | None, frame_time: float
+) -> None:
     """Writes the angles of a joint into their columns; what the body has no degree of freedom for is lost."""
     dofs = [dof for dof in body.dofs if dof.joint == joint and not dof.is_length]
     if not dofs or joint == "pelvis":
         return
     columns = [body.columns[dof.name] for dof in dofs]
     if len(dofs) == 3:
-        values[:, columns] = angles_of(turns, dofs)
+        values[:, columns] = angles_of(turns, dofs, frame_time)
     else:
         (dof,) = dofs
         axis = np.array(dof.axis)
@@ -217,7 +207,9 @@ def _root(
         moves = body.subset(f"root.{part}" for part in ("sway", "heave", "surge"))
         values[:, moves] = rotated(back, places - path)
         dofs = [dof for dof in body.dofs if dof.joint == "pelvis" and not dof.is_length]
-        values[:, [body.columns[dof.name] for dof in dofs]] = angles_of(multiply(back, pelvis), dofs)
+        values[:, [body.columns[dof.name] for dof in dofs]] = angles_of(
+            multiply(back, pelvis), dofs, frame_time
+        )
     return facing, path
 
 
