@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from gmr import _core
 from gmr.actionlets.dofs import Dof
+from gmr.quaternions import about, conjugate, multiply
 
 __all__ = ["angles_of"]
 
@@ -30,6 +31,8 @@ _OUTSIDE = 0.2
 """Cost of a second out of range by a radian, in squared radians of steps."""
 _LEAP = 100.0
 """Cost of a step of more than a half turn: no joint turns so far between two frames."""
+_LOOSE = 1e-6
+"""Cosine of the sideways angle below which flexion and rotation cannot be told apart."""
 _TURNS = 2 * np.pi * np.array([[i, 0, k] for i in (-1, 0, 1) for k in (-1, 0, 1)], np.float64)
 
 
@@ -56,11 +59,28 @@ def angles_of(rotations: Floats, dofs: Sequence[Dof], frame_time: float) -> Floa
     near = [_near(reading, middle) for reading in (course, _other(course))]
     first, second = (np.all((one >= low - _EXACT) & (one <= high + _EXACT), axis=-1) for one in near)
     if (first | second).all():
-        return np.where(first[:, None], near[0], near[1])
+        return _settled(np.where(first[:, None], near[0], near[1]), rotations, dofs)
     whole = [_shifted(reading, middle) for reading in (course, _other(course))]
     readings = np.concatenate([reading[:, None] + _TURNS for reading in whole], axis=1)
     excess = np.maximum(low - readings, 0.0) + np.maximum(readings - high, 0.0)
-    return _cheapest(readings, _OUTSIDE * frame_time * (excess**2).sum(axis=-1))
+    found = _cheapest(readings, _OUTSIDE * frame_time * (excess**2).sum(axis=-1))
+    return _settled(found, rotations, dofs)
+
+
+def _settled(angles: Floats, rotations: Floats, dofs: Sequence[Dof]) -> Floats:
+    """The same poses, with the flexion between that of the frames around where it cannot be told."""
+    loose = np.abs(np.cos(angles[:, 1])) < _LOOSE
+    if not loose.any() or loose.all():
+        return angles
+    frames = np.arange(len(angles))
+    found = angles.copy()
+    found[loose, 0] = np.interp(frames[loose], frames[~loose], angles[~loose, 0])
+    axes = [np.array(dof.axis) for dof in dofs]
+    before = multiply(about(axes[0], found[loose, 0]), about(axes[1], found[loose, 1]))
+    rest = multiply(conjugate(before), rotations[loose])
+    turn = 2 * np.arctan2(rest[:, :3] @ axes[2], rest[:, 3])
+    found[loose, 2] = _near(turn, angles[loose, 2])
+    return found
 
 
 def _cheapest(readings: Floats, costs: Floats) -> Floats:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gmr.actionlets.anatomy import anatomy
+from gmr.actionlets.anatomy import Anatomy, anatomy
 from gmr.actionlets.body import Body
 from gmr.actionlets.euler_dofs import angles_of
 from gmr.actionlets.likeness import leg_of
@@ -30,6 +30,10 @@ Floats = NDArray[np.float64]
 _UP = np.array([0.0, 1.0, 0.0])
 _SMOOTH = 0.4
 """Seconds, standard deviation of the Gaussian that takes the sway of a stride out of path and heading."""
+_STANDING = 0.1
+"""Quantile of the lower ankle's heights that counts as its height when it stands."""
+_SOLE = 0.1
+"""Metres by which the heights of ankles above the ground may differ."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,13 +102,23 @@ def read(
         local = _local(body, turned.world, turned.hinges)
         hinges, said, shown = dict(turned.hinges), turned.rest, found.motion
         hips = (found.place("left_hip") + found.place("right_hip")) / 2
-        places = hips * (body_leg(body) / leg_of(found))
+        scale = body_leg(body) / leg_of(found)
+        places = hips * scale - np.array([0.0, _sunk(body, found, scale), 0.0])
     values = np.zeros((len(places), body.dof_count))
     for joint in _turning_joints(body):
         _write(values, body, joint, local[joint], hinges.get(joint), shown.frame_time)
     facing, path = _root(body, values, local["pelvis"], places, root, heading, shown.frame_time)
     fps = 1 / shown.frame_time if shown.frame_time > 0 else 1.0
     return Reading(body, values, path, facing, fps, said, motion.name)
+
+
+def _sunk(body: Body, found: Anatomy, scale: float) -> float:
+    """How far the body has to go down to stand as deep as the motion's: where the lower ankle is in the
+    lowest frames, it is that much above the height at which the body's own is. Beyond a shoe's sole it is
+    another floor, which stays."""
+    ankles = np.minimum(found.place("left_ankle")[:, 1], found.place("right_ankle")[:, 1])
+    above = scale * float(np.quantile(ankles, _STANDING)) - body.foot.ankle_height
+    return above if abs(above) < _SOLE else 0.0
 
 
 def body_leg(body: Body) -> float:

@@ -92,8 +92,9 @@ def _following(body: Body, found: Anatomy) -> Following:
     mine = find_body(body.skeleton, body.rest)
     assert mine is not None
     parts = dict(mine.parts)
-    if "head" in found.parts:
-        # One joint for neck and head: it turns as the head does.
+    head = found.parts["head"][0] if "head" in found.parts else None
+    if head is not None and (found.by_ends or found.whole.skeleton.children[head]):
+        # One joint for neck and head: it turns as the head does, where that turns.
         parts["head"] = parts.pop("neck")
     bodies = (Parts(parts, mine.found_by), Parts(found.parts, "parts"))
     try:
