@@ -131,7 +131,6 @@ def test_another_skeleton_with_another_rest_pose_shows_the_same_angles(seed: int
         # The foot of the other skeleton is flat where its rest says so; contacts would say otherwise.
         for motion in ("flexion", "inversion", "rotation"):
             angles[:, body.column(f"{side}_ankle.{motion}")] = 0
-    # The rest pose of an upright body has no bent neck, and a hip's movement is no root's.
     moving = posing.motion(body, angles, np.array([0.0, 3.0, 0.0]), float(rng.uniform(-3, 3)))
     found = posing.angles(body, other_skeleton(moving, seed))
     kept = [c for c, dof in enumerate(body.dofs[:34]) if "ankle" not in dof.joint]
@@ -139,8 +138,8 @@ def test_another_skeleton_with_another_rest_pose_shows_the_same_angles(seed: int
 
 
 def assert_is_gait(motion: Motion) -> None:
-    """As in Perry, Gait Analysis (1992): the hip from about 30 degrees of flexion to 10 or 20 of extension, the
-    knee to 60 or 70 in swing and nearly straight before and after; ankle, pelvis, trunk near their zeros."""
+    """As in Perry, Gait Analysis (1992): the hip from 30 degrees of flexion to 10 or 20 of extension, the
+    knee to 60 or 70 in swing, nearly straight before and after; ankle, pelvis, trunk near their zeros."""
     body = Body.like(motion)
     found = read(body, motion)
     degrees = {name: np.degrees(found.angles[:, column]) for name, column in body.columns.items()}

@@ -27,9 +27,12 @@ SIDES = ("left", "right")
 Axis = tuple[float, float, float]
 
 _AXES: Mapping[str, Axis] = {
-    f"{sign}{letter}": (value * (letter == "X"), value * (letter == "Y"), value * (letter == "Z"))
-    for sign, value in (("+", 1.0), ("-", -1.0))
-    for letter in "XYZ"
+    "+X": (1.0, 0.0, 0.0),
+    "-X": (-1.0, 0.0, 0.0),
+    "+Y": (0.0, 1.0, 0.0),
+    "-Y": (0.0, -1.0, 0.0),
+    "+Z": (0.0, 0.0, 1.0),
+    "-Z": (0.0, 0.0, -1.0),
 }
 _MIDDLE = ("neck", "waist")
 

@@ -14,9 +14,14 @@ from numpy.typing import NDArray
 from gmr.actionlets.anatomy import Anatomy, anatomy
 from gmr.motion import Motion
 
-__all__ = ["LIMBS", "Figure", "figure", "outline"]
+__all__ = ["COLOURS", "INK", "LIMBS", "PAPER", "PATH", "Figure", "figure", "outline"]
 
 Floats = NDArray[np.float64]
+
+COLOURS = {"left": "#8fb8de", "right": "#1d4f8a", "": "#5b7088"}
+"""Of the limbs, by their side."""
+INK, PATH, PAPER = "#27313b", "#c4621f", "#ffffff"
+"""Of letters and the ground, of the pelvis' path, and of what is behind."""
 
 _ANKLE_OVER_BALL = np.arctan2(0.039, 0.0722)
 """Angle above the sole at which the ankle is seen from the ball of the foot."""
@@ -115,7 +120,7 @@ def figure(motion: Motion) -> Figure:
 
 def outline(circles: Floats) -> Floats:
     """(N, 2) convex outline around circles (K, 3): x, y, radius."""
-    turn = np.linspace(0, 2 * np.pi, 28, endpoint=False)
+    turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)
     ring = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
     points = (circles[:, None, :2] + circles[:, None, 2:] * ring).reshape(-1, 2)
     return _hull(points)
