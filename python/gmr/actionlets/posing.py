@@ -7,6 +7,7 @@ stands at ``root + R_y(heading) (sway, heave, surge)``.
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -75,9 +76,11 @@ def motion(
         F frames in metres, in post-rotation form, which BVH, GMR and glTF write.
 
     Raises:
-        ActionletError: a shape does not fit.
+        ActionletError: a shape does not fit, or there is no such frame rate.
     """
     values = _checked(body, angles)
+    if not (math.isfinite(fps) and fps > 0):
+        raise ActionletError(f"fps={fps}: give more than 0")
     count = len(values)
     facing = _frames(0.0 if heading is None else heading, (count,), "heading")
     path = _frames([0.0, body.hip_height, 0.0] if root is None else root, (count, 3), "root")
