@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from gmr.actionlets.travel.flight import GRAVITY, flights
 from gmr.actionlets.travel.leg import place_foot
-from gmr.actionlets.travel.legs import legs_of, pelvis_shift, pelvis_turn
+from gmr.actionlets.travel.legs import legs_of, pelvis_shift, pelvis_turn, sole_of
 from gmr.actionlets.travel.mass import legs_moment, trunk_moment
 from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.plan import SIDES, Planned, Stance, asked, stances
-from gmr.actionlets.travel.turns import turned
+from gmr.actionlets.travel.sole import pitch_of
+from gmr.actionlets.travel.turns import pitched, turned
 
 if TYPE_CHECKING:
     from gmr.actionlets.body import Body
@@ -196,16 +197,22 @@ def _feet(
 
 
 def _feet_speed(body: Body, planned: Floats, every: Sequence[Stance], fps: float) -> float:
-    """Mean speed backwards of the lower of heel and toes of planned feet on the ground, from the pelvis."""
-    still = np.zeros(len(planned))
-    heels, toes, _ = _feet(body, planned, np.zeros((len(planned), 3)), still)
-    ways, steps = 0.0, 0
+    """Mean speed backwards, from the pelvis, of the footprints on which the planned feet would roll, in the
+    middle half of each stance."""
+    turn, legs = pelvis_turn(body, planned), legs_of(body)
+    soles = [sole_of(body, leg) for leg in legs]
+    feet = [place_foot(leg, planned) for leg in legs]
+    way, steps = 0.0, 0
     for stance in every:
-        heel, toe = heels[stance.leg][stance.frames], toes[stance.leg][stance.frames]
-        lower = heel[1:, 1] + heel[:-1, 1] < toe[1:, 1] + toe[:-1, 1]
-        ways += float(np.where(lower, -np.diff(heel[:, 2]), -np.diff(toe[:, 2])).sum())
-        steps += stance.last - stance.first
-    return ways * fps / steps if steps else 0.0
+        foot, at = feet[stance.leg], stance.frames
+        pitch = soles[stance.leg].settled(pitch_of(turn[at] @ foot.foot[at]))
+        point, ground = soles[stance.leg].contact(pitch)
+        rolled = ground[:, 1] - turned(pitched(pitch), point)[:, 2]
+        place = turned(turn[at], foot.ankle[at])[:, 2] - rolled
+        quarter = len(place) // 4
+        way += float(place[quarter] - place[-1 - quarter])
+        steps += len(place) - 1 - 2 * quarter
+    return way * fps / steps if steps else 0.0
 
 
 def _slide(heel: Floats, toe: Floats) -> float:
