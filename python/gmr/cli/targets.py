@@ -91,11 +91,12 @@ def _place(path: Path, to: Format | None) -> Path:
 
 
 def _check_folder(source: str, target: str) -> None:
-    from gmr.formats.registry import suffixes
+    from gmr.formats.registry import FORMATS
 
+    known = [suffix for each in FORMATS for suffix in each.suffixes]
     if target == STDIO or Path(target).is_file():
         raise click.UsageError(f"'{source}' is a folder, so OUT must be a folder too, not '{target}'")
-    if not Path(target).exists() and Path(target).suffix.lower() in suffixes():
+    if not Path(target).exists() and Path(target).suffix.lower() in known:
         raise click.UsageError(
             f"'{source}' is a folder, so OUT must be a folder too, but '{target}' is called like a file; "
             "give a name without the suffix"

@@ -28,7 +28,8 @@ class Format:
         begins: what its files begin with, any of these: words of text in upper case, after comments that
             begin with ``#``, or bytes of a binary file.
         module: the module that knows it, imported when first needed.
-        reader: its function ``(data: bytes, *, name, strict, **options) -> Motion``, or Markers.
+        reader: its function ``(data: bytes, *, name, strict, **options) -> Motion``, or Markers; None where gmr
+            only writes it.
         writer: its function ``(motion) -> bytes`` or pieces of them; None where gmr only reads it.
         options: what the reader can be told besides ``name`` and ``strict``.
         beside: suffix and writer of a second file without which its files say nothing.
@@ -36,13 +37,14 @@ class Format:
         begins_at: the byte at which ``begins`` stands, for a binary file; None: it is text.
         is_mapped: the reader takes the map of a file in memory as well as its bytes.
         holds: what is in its files; folders are searched for motions only.
+        in_metres: lengths are in metres whatever the unit of the motion is.
     """
 
     name: str
     suffixes: tuple[str, ...]
     begins: tuple[bytes, ...]
     module: str
-    reader: str
+    reader: str | None
     writer: str | None
     options: tuple[str, ...] = ()
     beside: tuple[str, str] | None = None
@@ -50,6 +52,7 @@ class Format:
     begins_at: int | None = None
     is_mapped: bool = False
     holds: Literal["motion", "markers"] = "motion"
+    in_metres: bool = False
 
     @property
     def is_text(self) -> bool:
@@ -63,7 +66,14 @@ class Format:
         return text.upper().startswith(self.begins)
 
     def read(self, data: bytes | memoryview, **options: Any) -> Motion:
-        """What is in ``data``: a motion, or markers as :attr:`holds` says."""
+        """What is in ``data``: a motion, or markers as :attr:`holds` says.
+
+        Raises:
+            FormatError: gmr writes the format but does not read it.
+        """
+        if self.reader is None:
+            what = f"gmr writes {self.name} but does not read it; read the motion that it was written from"
+            raise FormatError(what, file=options.get("name"))
         read: Callable[..., Motion] = getattr(import_module(self.module), self.reader)
         return read(data, **options)
 
@@ -135,12 +145,14 @@ FORMATS: Final = (
         options=("animation", "fps"), begins_at=0,
     ),
     Format("glTF", (".gltf",), (b"{",), "gmr.formats.gltf", "read_gltf", None, options=("animation", "fps")),
+    Format("X3D", (".x3d",), (b"<?XML", b"<X3D"), "gmr.formats.x3d", None, "x3d_chunks", in_metres=True),
 )  # fmt: skip
 
 
 def suffixes(holds: Literal["motion", "markers"] | None = None) -> tuple[str, ...]:
     """Suffixes of files that gmr reads; of those that hold motions, or markers, or of all."""
-    return tuple(suffix for known in FORMATS if holds in (None, known.holds) for suffix in known.suffixes)
+    found = (known for known in FORMATS if known.reader is not None and holds in (None, known.holds))
+    return tuple(suffix for known in found for suffix in known.suffixes)
 
 
 def named_format(name: str) -> Format:
@@ -168,8 +180,9 @@ def format_of_file(file: str) -> Format:
         if suffix in known.suffixes:
             return known
     found = f"the suffix '{suffix}' is" if suffix else "a name without a suffix is"
+    listed = ", ".join(known for each in FORMATS for known in each.suffixes)
     raise FormatError(
-        f"{found} none that gmr knows ({', '.join(suffixes())}). Rename the file; or name its format in "
+        f"{found} none that gmr knows ({listed}). Rename the file; or name its format in "
         f"Python (format='{FORMATS[0].name.lower()}'), or put - in its place on the command line.",
         file=file,
     )

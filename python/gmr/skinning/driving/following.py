@@ -19,7 +19,7 @@ from gmr.skeleton import Skeleton
 from gmr.skinning.driving.body_parts import Body
 from gmr.skinning.driving.parts import CHAINS
 
-__all__ = ["Bone", "Following", "Names", "follow", "read_names"]
+__all__ = ["Bone", "Following", "Names", "bones_of", "follow", "read_names", "with_stated"]
 
 Names = Mapping[str, Any] | str | os.PathLike[str]
 """Character's joint -> motion's joint; or tables ``follows``, ``character`` and ``motion``; or a file."""
@@ -151,7 +151,7 @@ def follow(
     mine, theirs = bodies
     same = [(j, motion.names.index(name)) for j, name in enumerate(character.names) if name in motion.names]
     is_same = len(same) >= _ALIKE * len(character.names)
-    bone_of = _bones(motion, by_ends and not is_same)
+    bone_of = bones_of(motion, by_ends=by_ends and not is_same)
     if is_same:
         how = "by their names, which are the same"
         found = same
@@ -213,13 +213,17 @@ def _spread(k: int, count: int, length: int) -> int:
     return 0 if count == 1 else round(k * (length - 1) / (count - 1))
 
 
-def _bones(motion: Skeleton, by_ends: bool) -> Callable[[int], Bone | None]:
-    """What makes a bone of a joint; None for a joint that turns nothing."""
+def bones_of(motion: Skeleton, *, by_ends: bool) -> Callable[[int], Bone | None]:
+    """What makes a bone of a joint; None for a joint that turns nothing.
+
+    Args:
+        motion: at home.
+        by_ends: its joints are named for the bones that end in them, as in ASF.
+    """
 
     def named_for_end(joint: int) -> Bone | None:
-        return Bone(
-            int(motion.parents[joint]) if motion.parents[joint] >= 0 else joint, joint, motion.names[joint]
-        )
+        above = int(motion.parents[joint])
+        return named_for_start(joint) if above < 0 else Bone(above, joint, motion.names[joint])
 
     def named_for_start(joint: int) -> Bone | None:
         below = motion.children[joint]

@@ -1,0 +1,179 @@
+"""A motion as a humanoid of H-Anim in X3D (ISO/IEC 19775-1, 19776-1 version 4.0; ISO/IEC 19774-1:2019).
+
+gmr writes the format, and does not read it.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from gmr import _core
+from gmr.errors import FormatWarning, GmrError
+from gmr.formats.hanim import articulations
+from gmr.formats.writing import write_pieces
+from gmr.formats.x3d_animation import animation, joint_def, offset
+from gmr.formats.x3d_geometry import axis_angle, ground, segment, viewpoint
+from gmr.formats.x3d_humanoid import Humanoid, humanoid_of
+from gmr.formats.x3d_nodes import closed, element, opened
+from gmr.motion import Motion
+
+__all__ = ["write_x3d", "x3d_chunks"]
+
+_HEADER = """<?xml version="1.0" encoding="UTF-8"?>
+<!DOCTYPE X3D PUBLIC "ISO//Web3D//DTD X3D 4.0//EN" "https://www.web3d.org/specifications/x3d-4.0.dtd">
+<X3D profile="Immersive" version="4.0" xmlns:xsd="http://www.w3.org/2001/XMLSchema-instance" \
+xsd:noNamespaceSchemaLocation="https://www.web3d.org/specifications/x3d-4.0.xsd">
+"""
+
+
+def write_x3d(
+    motion: Motion,
+    path: str | os.PathLike[str],
+    *,
+    names: Mapping[str, str] | None = None,
+    rest: int | None = None,
+) -> None:
+    """Write a motion as X3D; as :func:`gmr.write`, for a body that gmr does not know by itself.
+
+    Args:
+        motion: of a human.
+        path: where; what was there is replaced when its successor is whole.
+        names: joints by part of the body, ``{"left_up_leg": "joint_7"}``, chains as ``"spine.0"``; they go
+            before any guess. The parts are those of ``gmr/data/joint_names``.
+        rest: the frame in which the motion stands most like H-Anim's default pose, where it has no rest pose
+            of its own.
+
+    Raises:
+        SkeletonError: hips, legs or feet are not known; says what is missing.
+        GmrError: as :func:`x3d_chunks`; or the file cannot be written.
+    """
+    write_pieces(Path(path), x3d_chunks(motion, names=names, rest=rest))
+
+
+def x3d_chunks(
+    motion: Motion, *, names: Mapping[str, str] | None = None, rest: int | None = None
+) -> Iterator[bytes]:
+    """The motion as an X3D file, piece by piece; a single frame is a posture that does not move.
+
+    Its joints are where those of the motion are, in metres and Y up. All is checked before the first piece
+    comes out.
+
+    Args:
+        motion: of a human.
+        names: joints by part of the body; see :func:`write_x3d`.
+        rest: the frame in which it rests.
+
+    Raises:
+        SkeletonError: hips, legs or feet are not known.
+        FormatError: a place is no finite number.
+        GmrError: there are no frames or several without a frame time, the unit is not known, or no such frame.
+
+    Warns:
+        FormatWarning: the unit was guessed, or there is no rest pose.
+    """
+    if motion.frame_count > 1 and not motion.frame_time:
+        raise GmrError(
+            f"{motion.name or 'the motion'} does not say how long a frame lasts, so X3D cannot play it; give it "
+            "a frame time, or write a single frame: motion[0:1]"
+        )
+    body = humanoid_of(motion, names, rest)
+    file = motion.name or "the motion"
+    unit = body.scene.unit
+    if unit.guessed:
+        say = f"{file}: taken to be in {unit.name}, guessed from the body; state another with motion.with_unit"
+        warnings.warn(FormatWarning(say), stacklevel=2)
+    if body.odd:
+        warnings.warn(FormatWarning(f"{file}: {body.odd}; say in which frame it does with rest="), stacklevel=2)
+    body.measured  # noqa: B018  (all is looked at before anything is written)
+    return _pieces(body)
+
+
+def _pieces(body: Humanoid) -> Iterator[bytes]:
+    yield _HEADER.encode()
+    yield _text(_head(body))
+    yield _text([opened("Scene"), *_world(body), *_humanoid(body)])
+    if body.motion.frame_count > 1:
+        yield from animation(body)
+    yield _text([closed("Scene"), closed("X3D")])
+
+
+def _text(lines: list[str] | Iterator[str]) -> bytes:
+    return "".join(f"{line}\n" for line in lines).encode()
+
+
+def _title(body: Humanoid) -> str:
+    return Path(body.motion.name or "motion").stem
+
+
+def _head(body: Humanoid) -> Iterator[str]:
+    unit = body.scene.unit
+    guessed = ", guessed from the body" if unit.guessed else ""
+    yield opened("head")
+    yield element("component", name="HAnim", level="1")
+    said = {
+        "title": _title(body),
+        "generator": f"gmr {_core.__version__}",
+        "unit of the motion": f"{body.metres:.9g} m{guessed}",
+        "rest pose": body.rest.said,
+        "frames": f"{body.motion.frame_count} at {body.motion.fps:.9g} frames a second",
+        "left out": ", ".join(body.left_out) or "no joint",
+    }
+    for name, content in said.items():
+        yield element("meta", name=name, content=content)
+    yield closed("head")
+
+
+def _world(body: Humanoid) -> Iterator[str]:
+    yield element("WorldInfo", title=_title(body))
+    yield element("NavigationInfo", type='"EXAMINE" "ANY"')
+    yield element("Background", skyColor="0.93 0.94 0.96")
+    yield viewpoint(body)
+    yield from ground(body)
+
+
+def _humanoid(body: Humanoid) -> Iterator[str]:
+    """The tree of joints and segments, and the lists of both, which H-Anim asks for beside it."""
+    yield opened(
+        "HAnimHumanoid",
+        def_="hanim_humanoid",
+        name=_title(body),
+        version="2.0",
+        loa="1",
+        skeletalConfiguration="BASIC",
+    )
+    yield from _joint(body, "humanoid_root")
+    for name in body.above:
+        yield element("HAnimJoint", use=joint_def(name), containerField="joints")
+    for name in body.above:
+        yield element("HAnimSegment", use=joint_def(articulations()[name].segment), containerField="segments")
+    yield closed("HAnimHumanoid")
+
+
+def _joint(body: Humanoid, name: str) -> Iterator[str]:
+    measured, stand = body.measured, body.stands.get(name)
+    turn = shift = None
+    if stand is not None and name not in measured.turning:
+        turn = axis_angle(measured.still[name])
+    if name == "humanoid_root" and name not in measured.moving:
+        shift = offset(body, name, measured.box[0])
+    yield opened(
+        "HAnimJoint",
+        def_=joint_def(name),
+        name=name,
+        containerField=None if body.above[name] else "skeleton",
+        description=None if stand is None else body.motion.skeleton.names[stand.joint],
+        center=measured.centres[name],
+        rotation=turn if turn is not None and turn[3] else None,
+        translation=shift,
+    )
+    part = articulations()[name].segment
+    yield opened("HAnimSegment", def_=joint_def(part), name=part)
+    yield from segment(body, name)
+    yield closed("HAnimSegment")
+    for below, above in body.above.items():
+        if above == name:
+            yield from _joint(body, below)
+    yield closed("HAnimJoint")
