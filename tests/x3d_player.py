@@ -105,7 +105,10 @@ class Player:
 
     def _values(self, fraction: float) -> dict[tuple[str, str], Floats]:
         """By node and field, what the interpolators give to it when the clock says ``fraction``."""
-        routes = [(r.attrib["fromNode"], r.attrib["fromField"], r.attrib["toNode"], r.attrib["toField"]) for r in self.root.iter("ROUTE")]
+        routes = [
+            (r.attrib["fromNode"], r.attrib["fromField"], r.attrib["toNode"], r.attrib["toField"])
+            for r in self.root.iter("ROUTE")
+        ]
         driven = set()
         for source, output, target, put in routes:
             if self.nodes[source].tag == "TimeSensor":

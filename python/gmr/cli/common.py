@@ -245,6 +245,15 @@ def write_output(motion: Motion, out: Path | str, format: str | None = None) -> 
     Returns:
         The file that was written beside, if one was.
     """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", FormatWarning)
+        second = _written(motion, out, format)
+    for warning in caught:
+        say(str(warning.message))
+    return second
+
+
+def _written(motion: Motion, out: Path | str, format: str | None) -> list[str]:
     from gmr.formats import write
     from gmr.formats.registry import format_of_file
 

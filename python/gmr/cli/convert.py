@@ -133,10 +133,9 @@ def convert(
       gmr convert walk.bvh walk.glb --unit m    glTF, which is in metres: nodes that move
       gmr convert walk.bvh neck.bvh --roots Neck
       gmr convert - - --fps 30 < walk.bvh > walk30.bvh
+      gmr convert walk.bvh walk.x3d         a humanoid of H-Anim that X3D browsers play
       gmr convert walk.c3d walk.bvh         a motion from markers; see gmr info walk.c3d first
     """
-    if from_unit is not None and unit is None:
-        raise click.UsageError("--from-unit says what --unit converts from; give --unit too")
     if fitting.as_json and target == STDIO:
         raise click.UsageError(
             "--json is printed on standard output, where the motion goes; name a file as OUT"
@@ -144,6 +143,8 @@ def convert(
     changes = _Changes(fps, unit, from_unit, drop_dummies, mirror, roots)
     failures, report = Failures(), _Report()
     jobs = jobs_of(source, target, to)
+    if from_unit is not None and unit is None and not any(_is_in_metres(job) for job in jobs):
+        raise click.UsageError("--from-unit says what --unit converts from; give --unit too")
     with progress(jobs, "Converting") as watched:
         for job in watched:
             with failures.of(str(job.source)):
@@ -155,11 +156,22 @@ def convert(
                 motion = _fitted(found, fitting, report)
                 with naming(motion):
                     motion = _changed(motion, changes, report.guessed)
+                    if _is_in_metres(job):
+                        motion = _in_known_unit(motion, changes.from_unit, report.guessed)
                 report.add(job, motion, write_output(motion, job.out, job.format))
     report.say(failures, len(jobs))
     if fitting.as_json and not report.fitted:
         click.echo(report.as_json(failures))
     return failures.exit_code()
+
+
+def _is_in_metres(job: Job) -> bool:
+    """Whether what is written is in metres, so that the unit of the motion must be known."""
+    from gmr.formats.registry import FORMATS, format_of_file, named_format
+
+    if job.format is not None:
+        return named_format(job.format).in_metres
+    return (FORMATS[0] if job.out == STDIO else format_of_file(str(job.out))).in_metres
 
 
 def _fitted(found: Motion | Markers, fitting: Fitting, report: _Report) -> Motion:

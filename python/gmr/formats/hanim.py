@@ -1,8 +1,8 @@
 """The joints of a humanoid as H-Anim names, nests and places them.
 
-Source: ISO/IEC 19774-1:2019 "Humanoid animation (H-Anim) architecture", 4.9.6 (hierarchies and segments of the
-levels of articulation) and Annex A (centres of joints in the default pose: standing, facing +Z, arms at the
-sides, metres, the origin on the ground between the feet).
+Source: ISO/IEC 19774-1:2019 "Humanoid animation (H-Anim) architecture", 4.9.6 (hierarchies and segments of
+the levels of articulation) and Annex A (centres of joints in the default pose: standing, facing +Z, arms at
+the sides, metres, the origin on the ground between the feet).
 """
 
 from __future__ import annotations
@@ -54,7 +54,9 @@ _SIDED = (
     Articulation("hip", "sacroiliac", "thigh", (0.0961, 0.9124, -0.0001)),
     Articulation("knee", "hip", "calf", (0.1040, 0.4867, 0.0308)),
     Articulation("talocrural", "knee", "talus", (0.1101, 0.0656, -0.0736)),
-    Articulation("metatarsophalangeal_2", "talocrural", "tarsal_proximal_phalanx_2", (0.1086, 0.0001, 0.0368)),
+    Articulation(
+        "metatarsophalangeal_2", "talocrural", "tarsal_proximal_phalanx_2", (0.1086, 0.0001, 0.0368)
+    ),
     Articulation("sternoclavicular", "vt1", "clavicle", (0.0820, 1.4488, -0.0353)),
     Articulation("shoulder", "sternoclavicular", "upperarm", (0.2029, 1.4376, -0.0387)),
     Articulation("elbow", "shoulder", "forearm", (0.2014, 1.1357, -0.0682)),
@@ -89,7 +91,13 @@ def _finger(number: int) -> tuple[tuple[str, str], ...]:
     )
 
 
-_FINGERS = {"thumb": _THUMB, "index": _finger(2), "middle": _finger(3), "ring": _finger(4), "pinky": _finger(5)}
+_FINGERS = {
+    "thumb": _THUMB,
+    "index": _finger(2),
+    "middle": _finger(3),
+    "ring": _finger(4),
+    "pinky": _finger(5),
+}
 
 FINGERS: Mapping[str, tuple[str, ...]] = {
     part: tuple(name for name, _ in chain) for part, chain in _FINGERS.items()

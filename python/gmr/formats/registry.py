@@ -28,8 +28,8 @@ class Format:
         begins: what its files begin with, any of these: words of text in upper case, after comments that
             begin with ``#``, or bytes of a binary file.
         module: the module that knows it, imported when first needed.
-        reader: its function ``(data: bytes, *, name, strict, **options) -> Motion``, or Markers; None where gmr
-            only writes it.
+        reader: its function ``(data: bytes, *, name, strict, **options) -> Motion``, or Markers; None where
+            gmr only writes it.
         writer: its function ``(motion) -> bytes`` or pieces of them; None where gmr only reads it.
         options: what the reader can be told besides ``name`` and ``strict``.
         beside: suffix and writer of a second file without which its files say nothing.

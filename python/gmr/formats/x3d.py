@@ -14,9 +14,10 @@ from gmr import _core
 from gmr.errors import FormatWarning, GmrError
 from gmr.formats.hanim import articulations
 from gmr.formats.writing import write_pieces
-from gmr.formats.x3d_animation import animation, joint_def, offset
+from gmr.formats.x3d_animation import animation, joint_def
+from gmr.formats.x3d_figure import Figure, figure_of
 from gmr.formats.x3d_geometry import axis_angle, ground, segment, viewpoint
-from gmr.formats.x3d_humanoid import Humanoid, humanoid_of
+from gmr.formats.x3d_humanoid import humanoid_of
 from gmr.formats.x3d_nodes import closed, element, opened
 from gmr.motion import Motion
 
@@ -69,34 +70,34 @@ def x3d_chunks(
     Raises:
         SkeletonError: hips, legs or feet are not known.
         FormatError: a place is no finite number.
-        GmrError: there are no frames or several without a frame time, the unit is not known, or no such frame.
+        GmrError: there are no frames, or several without a frame time; the unit is not known; or there is no
+            such frame.
 
     Warns:
         FormatWarning: the unit was guessed, or there is no rest pose.
     """
     if motion.frame_count > 1 and not motion.frame_time:
         raise GmrError(
-            f"{motion.name or 'the motion'} does not say how long a frame lasts, so X3D cannot play it; give it "
-            "a frame time, or write a single frame: motion[0:1]"
+            f"{motion.name or 'the motion'} does not say how long a frame lasts, so X3D cannot play it; give "
+            "it a frame time, or write a single frame: motion[0:1]"
         )
-    body = humanoid_of(motion, names, rest)
-    file = motion.name or "the motion"
-    unit = body.scene.unit
+    figure = figure_of(humanoid_of(motion, names, rest))
+    file, unit = motion.name or "the motion", figure.body.scene.unit
     if unit.guessed:
-        say = f"{file}: taken to be in {unit.name}, guessed from the body; state another with motion.with_unit"
-        warnings.warn(FormatWarning(say), stacklevel=2)
-    if body.odd:
-        warnings.warn(FormatWarning(f"{file}: {body.odd}; say in which frame it does with rest="), stacklevel=2)
-    body.measured  # noqa: B018  (all is looked at before anything is written)
-    return _pieces(body)
+        what = f"taken to be in {unit.name}, guessed from the body; state another with motion.with_unit"
+        warnings.warn(FormatWarning(f"{file}: {what}"), stacklevel=2)
+    if figure.body.odd:
+        what = f"{figure.body.odd}; name another frame with gmr.formats.x3d.write_x3d(motion, path, rest=...)"
+        warnings.warn(FormatWarning(f"{file}: {what}"), stacklevel=2)
+    return _pieces(figure)
 
 
-def _pieces(body: Humanoid) -> Iterator[bytes]:
+def _pieces(figure: Figure) -> Iterator[bytes]:
     yield _HEADER.encode()
-    yield _text(_head(body))
-    yield _text([opened("Scene"), *_world(body), *_humanoid(body)])
-    if body.motion.frame_count > 1:
-        yield from animation(body)
+    yield _text(_head(figure))
+    yield _text([opened("Scene"), *_world(figure), *_humanoid(figure)])
+    if figure.body.motion.frame_count > 1:
+        yield from animation(figure)
     yield _text([closed("Scene"), closed("X3D")])
 
 
@@ -104,76 +105,77 @@ def _text(lines: list[str] | Iterator[str]) -> bytes:
     return "".join(f"{line}\n" for line in lines).encode()
 
 
-def _title(body: Humanoid) -> str:
-    return Path(body.motion.name or "motion").stem
+def _title(figure: Figure) -> str:
+    return Path(figure.body.motion.name or "motion").stem
 
 
-def _head(body: Humanoid) -> Iterator[str]:
-    unit = body.scene.unit
+def _head(figure: Figure) -> Iterator[str]:
+    unit = figure.body.scene.unit
     guessed = ", guessed from the body" if unit.guessed else ""
     yield opened("head")
     yield element("component", name="HAnim", level="1")
     said = {
-        "title": _title(body),
+        "title": _title(figure),
         "generator": f"gmr {_core.__version__}",
-        "unit of the motion": f"{body.metres:.9g} m{guessed}",
-        "rest pose": body.rest.said,
-        "frames": f"{body.motion.frame_count} at {body.motion.fps:.9g} frames a second",
-        "left out": ", ".join(body.left_out) or "no joint",
+        "unit of the motion": f"{figure.body.metres:.9g} m{guessed}",
+        "rest pose": figure.body.rest.said,
+        "frames": f"{figure.body.motion.frame_count} at {figure.body.motion.fps:.9g} frames a second",
+        "left out": ", ".join(figure.body.left_out) or "no joint",
     }
     for name, content in said.items():
         yield element("meta", name=name, content=content)
     yield closed("head")
 
 
-def _world(body: Humanoid) -> Iterator[str]:
-    yield element("WorldInfo", title=_title(body))
+def _world(figure: Figure) -> Iterator[str]:
+    yield element("WorldInfo", title=_title(figure))
     yield element("NavigationInfo", type='"EXAMINE" "ANY"')
     yield element("Background", skyColor="0.93 0.94 0.96")
-    yield viewpoint(body)
-    yield from ground(body)
+    yield element("DirectionalLight", direction="-0.3 -1 -0.4", intensity="0.7", global_="true")
+    yield viewpoint(figure)
+    yield from ground(figure)
 
 
-def _humanoid(body: Humanoid) -> Iterator[str]:
+def _humanoid(figure: Figure) -> Iterator[str]:
     """The tree of joints and segments, and the lists of both, which H-Anim asks for beside it."""
     yield opened(
         "HAnimHumanoid",
         def_="hanim_humanoid",
-        name=_title(body),
+        name=_title(figure),
         version="2.0",
         loa="1",
         skeletalConfiguration="BASIC",
     )
-    yield from _joint(body, "humanoid_root")
-    for name in body.above:
+    yield from _joint(figure, "humanoid_root")
+    for name in figure.body.above:
         yield element("HAnimJoint", use=joint_def(name), containerField="joints")
-    for name in body.above:
+    for name in figure.body.above:
         yield element("HAnimSegment", use=joint_def(articulations()[name].segment), containerField="segments")
     yield closed("HAnimHumanoid")
 
 
-def _joint(body: Humanoid, name: str) -> Iterator[str]:
-    measured, stand = body.measured, body.stands.get(name)
+def _joint(figure: Figure, name: str) -> Iterator[str]:
+    stand = figure.body.stands.get(name)
     turn = shift = None
-    if stand is not None and name not in measured.turning:
-        turn = axis_angle(measured.still[name])
-    if name == "humanoid_root" and name not in measured.moving:
-        shift = offset(body, name, measured.box[0])
+    if stand is not None and name not in figure.turning:
+        turn = axis_angle(figure.still[name])
+    if name == "humanoid_root" and name not in figure.moving:
+        shift = figure.translation(name, figure.box[0])
     yield opened(
         "HAnimJoint",
         def_=joint_def(name),
         name=name,
-        containerField=None if body.above[name] else "skeleton",
-        description=None if stand is None else body.motion.skeleton.names[stand.joint],
-        center=measured.centres[name],
+        containerField=None if figure.body.above[name] else "skeleton",
+        description=None if stand is None else figure.body.motion.skeleton.names[stand.named],
+        center=figure.centres[name],
         rotation=turn if turn is not None and turn[3] else None,
         translation=shift,
     )
     part = articulations()[name].segment
     yield opened("HAnimSegment", def_=joint_def(part), name=part)
-    yield from segment(body, name)
+    yield from segment(figure, name)
     yield closed("HAnimSegment")
-    for below, above in body.above.items():
+    for below, above in figure.body.above.items():
         if above == name:
-            yield from _joint(body, below)
+            yield from _joint(figure, below)
     yield closed("HAnimJoint")

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.formats.x3d_humanoid import Humanoid
+from gmr.formats.x3d_figure import Figure
 from gmr.formats.x3d_nodes import closed, element, opened
 from gmr.quaternions import about, multiply
 from gmr.skinning.driving.rest_poses import shortest_turn
@@ -29,18 +29,19 @@ _COLOURS = {"l": "0.25 0.45 0.85", "r": "0.9 0.5 0.2", "": "0.75 0.73 0.7"}
 _HEAD = 0.065
 """Radius of a head over stature, and how high its middle is above the base of the skull."""
 _FIELD_OF_VIEW = np.pi / 4
+_WIDE = 4 / 3
+"""Width over height of the narrowest picture that shows all of the way."""
 
 
-def segment(body: Humanoid, name: str) -> Iterator[str]:
+def segment(figure: Figure, name: str) -> Iterator[str]:
     """The shapes of the part of the body that a joint turns, in the default pose."""
-    measured = body.measured
-    start, stature = measured.centres[name], measured.stature
-    ends = [measured.centres[below] for below, above in body.above.items() if above == name]
+    start, stature = figure.centres[name], figure.stature
+    ends = [figure.centres[below] for below, above in figure.body.above.items() if above == name]
     if name == "skullbase":
-        yield from _head(start, measured.tips.get(name), stature)
+        yield from _head(start, figure.tips.get(name), stature)
         return
-    if name in measured.tips:
-        ends.append(measured.tips[name])
+    if name in figure.tips:
+        ends.append(figure.tips[name])
     thick = stature * next(share for part, share in _RADII if part in name)
     colour = name[0] if name[1:2] == "_" else ""
     yield from _shape(element("Sphere", radius=thick), colour, start)
@@ -80,31 +81,34 @@ def axis_angle(turn: Floats) -> Floats:
     return np.append(axis, 2 * np.arctan2(size, abs(turn[3])))
 
 
-def ground(body: Humanoid) -> Iterator[str]:
+def ground(figure: Figure) -> Iterator[str]:
     """A plate under all places that the humanoid goes to."""
-    low, high = body.measured.box
-    stature = body.measured.stature
+    low, high = figure.box
+    stature = figure.stature
     thick = 0.01 * stature
     middle, size = (low + high) / 2, high - low + 2 * stature
-    place = np.array([middle[0], body.measured.floor - 1.5 * thick - 0.02 * stature, middle[2]])
+    place = np.array([middle[0], figure.floor - 1.5 * thick - 0.02 * stature, middle[2]])
     box = element("Box", size=np.array([size[0], thick, size[2]]))
     yield opened("Transform", translation=place)
-    material = element("Material", diffuseColor="0.35 0.4 0.38")
+    material = element("Material", diffuseColor="0.45 0.5 0.48", specularColor="0 0 0")
     yield f"<Shape><Appearance>{material}</Appearance>{box}</Shape>"
     yield closed("Transform")
 
 
-def viewpoint(body: Humanoid) -> str:
+def viewpoint(figure: Figure) -> str:
     """From where all of the way is seen, across it; from before the body where it stays in place."""
-    low, high = body.measured.box
-    stature = body.measured.stature
+    low, high = figure.box
+    stature = figure.stature
     reach = float(np.hypot(*(high - low)[[0, 2]]))
-    ahead = _heading(body)
+    ahead = _heading(figure)
     aside = ahead + np.pi / 2 if reach > stature else ahead + np.pi / 6
     turn = multiply(about(_UP, np.asarray(aside)), about(np.array([1.0, 0.0, 0.0]), np.asarray(-0.12)))
     target = (low + high) / 2
-    far = (reach + 1.6 * stature) / 2 / np.tan(_FIELD_OF_VIEW / 2)
-    place = target + far * np.array([np.sin(aside) * np.cos(0.12), np.sin(0.12), np.cos(aside) * np.cos(0.12)])
+    wide = max((reach + 0.8 * stature) / _WIDE, 1.4 * stature)
+    far = wide / 2 / np.tan(_FIELD_OF_VIEW / 2)
+    place = target + far * np.array(
+        [np.sin(aside) * np.cos(0.12), np.sin(0.12), np.cos(aside) * np.cos(0.12)]
+    )
     return element(
         "Viewpoint",
         description="all of the way",
@@ -114,7 +118,7 @@ def viewpoint(body: Humanoid) -> str:
     )
 
 
-def _heading(body: Humanoid) -> float:
+def _heading(figure: Figure) -> float:
     """Radians about the vertical from +Z to where the root looks first."""
-    x, y, z, w = body.measured.still["humanoid_root"]
+    x, y, z, w = figure.still["humanoid_root"]
     return float(np.arctan2(2 * (x * z + w * y), 1 - 2 * (x * x + y * y)))

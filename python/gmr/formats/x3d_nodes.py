@@ -22,7 +22,7 @@ _LENGTH_DECIMALS, _TURN_DECIMALS = 6, 7
 
 
 def element(tag: str, /, **fields: str | float | Floats | None) -> str:
-    """``<tag field="value"/>``; fields that are None are left out, ``def_`` is ``DEF``, ``use`` is ``USE``."""
+    """``<tag field="value"/>``; a field that is None is left out, ``def_`` is ``DEF``, ``use`` is ``USE``."""
     return f"<{tag}{_fields(fields)}/>"
 
 
@@ -37,7 +37,7 @@ def closed(tag: str) -> str:
 
 
 def _fields(fields: dict[str, str | float | Floats | None]) -> str:
-    names = {"def_": "DEF", "use": "USE"}
+    names = {"def_": "DEF", "use": "USE", "global_": "global"}
     said = {names.get(name, name): _value(value) for name, value in fields.items() if value is not None}
     return "".join(f" {name}={quoteattr(value)}" for name, value in said.items())
 

@@ -28,15 +28,18 @@ _SHOWN = 80
 
 @dataclass(frozen=True, slots=True)
 class Stand:
-    """A joint of a motion in the place of one of H-Anim.
+    """A joint of a motion, at home, in the place of one of H-Anim.
 
     Args:
-        joint: of the motion, at home.
+        named: the joint of the motion that has the part's name.
+        joint: the one that stands there: the same, or the one above where joints are named for the bones that
+            end in them.
         carrier: the joint whose bone rotation (:meth:`Motion.bone_rotations`) turns what hangs on it; None:
             nothing turns there.
         part: of the body, as ``left_arm``.
     """
 
+    named: int
     joint: int
     carrier: int | None
     part: str
@@ -95,7 +98,7 @@ def tree_of(names: Mapping[str, object]) -> dict[str, str]:
 
 
 def _stand(joint: int, bone: Bone | None, part: str) -> Stand:
-    return Stand(joint, None, part) if bone is None else Stand(bone.start, bone.carrier, part)
+    return Stand(joint, joint, None, part) if bone is None else Stand(joint, bone.start, bone.carrier, part)
 
 
 def _column(parts: Mapping[str, Sequence[Stand]], high: Floats) -> dict[str, Stand]:
@@ -112,7 +115,11 @@ def _column(parts: Mapping[str, Sequence[Stand]], high: Floats) -> dict[str, Sta
         assert centre is not None
         return centre[1]
 
-    hip, shoulder, head = height("left_up_leg", "right_up_leg"), height("left_arm", "right_arm"), height("head")
+    hip, shoulder, head = (
+        height("left_up_leg", "right_up_leg"),
+        height("left_arm", "right_arm"),
+        height("head"),
+    )
     marks = [(nominal("l_hip"), hip), (nominal("l_shoulder"), shoulder), (nominal("skullbase"), head)]
     known = [(own, theirs) for own, theirs in marks if theirs is not None]
     for part, names in (("spine", SPINE), ("neck", NECK)):
@@ -126,11 +133,12 @@ def _column(parts: Mapping[str, Sequence[Stand]], high: Floats) -> dict[str, Sta
 
 
 def _along(heights: Sequence[float], marks: Sequence[tuple[float, float]]) -> list[float]:
-    """Heights as they would be in H-Anim's own body, straight on below and above the outermost marks."""
+    """Heights as they would be in H-Anim's own body; beyond the outermost marks those of the marks."""
     own, theirs = (np.array(side) for side in zip(*marks, strict=True))
     if len(own) < 2 or np.any(np.diff(theirs) <= 0):
         return [float(own[0])] * len(heights)
-    return np.interp(heights, theirs, own).tolist()
+    found: list[float] = np.interp(heights, theirs, own).tolist()
+    return found
 
 
 def levels(wanted: Sequence[float], offered: Sequence[float], *, first: bool) -> list[int]:
@@ -167,7 +175,7 @@ def _unknown(motion: Motion, body: Body | None) -> str:
     example = ", ".join(f"'{part}': ..." for part in missing[:2])
     return (
         f"neither the names nor the shape of {motion.name or 'the motion'} tell which joints are "
-        f"{', '.join(missing)}; H-Anim is for humans. The joints are {quoted(proper, _SHOWN)}. Name those of a "
-        "body as H-Anim or another naming does (humanoid_root, l_hip, r_hip, l_talocrural, r_talocrural ...), "
-        f"or say which they are: gmr.formats.x3d.write_x3d(motion, path, names={{{example}}})"
+        f"{', '.join(missing)}; H-Anim is for humans. The joints are {quoted(proper, _SHOWN)}. Name those of "
+        "a body as H-Anim or another naming does (humanoid_root, l_hip, r_hip, l_talocrural, r_talocrural "
+        f"...), or say which they are: gmr.formats.x3d.write_x3d(motion, path, names={{{example}}})"
     )

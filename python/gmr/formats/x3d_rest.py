@@ -1,8 +1,9 @@
 """A motion's rest pose, and the turns that lead to it from the default pose of H-Anim.
 
 In the default pose a humanoid stands and faces +Z with its arms at its sides. Trunk, head and shoulder girdle
-stand in it as the motion's do at rest, turned about the vertical; arms and legs hang straight down; feet point
-forward. Each limb gets there by the shortest turn after that of the bone above, so that no twist is added.
+stand in it as the motion's do at rest, turned about the vertical; arms and legs hang straight down; feet
+point forward. Each limb gets there by the shortest turn after that of the bone above, so that no twist is
+added.
 """
 
 from __future__ import annotations
@@ -32,12 +33,16 @@ _SAMPLES = 200
 _FEW = 4096
 """Frames of the beginning in which a rest pose is looked for."""
 _STANDING = (
-    ("head", "hips"), *((f"{side}_{a}", f"{side}_{b}") for side in _SIDES for a, b in (("up_leg", "leg"), ("leg", "foot"))),
-)  # fmt: skip
+    ("head", "hips"),
+    *((f"{side}_up_leg", f"{side}_leg") for side in _SIDES),
+    *((f"{side}_leg", f"{side}_foot") for side in _SIDES),
+)
 """Pairs of parts of which the first is right above the second in who stands."""
 
 
-def rest_of(motion: Motion, scene: Scene, begins: Mapping[str, int], frame: int | None) -> tuple[MotionRest, str]:
+def rest_of(
+    motion: Motion, scene: Scene, begins: Mapping[str, int], frame: int | None
+) -> tuple[MotionRest, str]:
     """The rest pose of a motion; the frame in which it stands most upright where it has none.
 
     Args:
@@ -58,7 +63,9 @@ def rest_of(motion: Motion, scene: Scene, begins: Mapping[str, int], frame: int 
         frame = _most_upright(motion, scene, begins)
         chosen = motion_rest(motion, begins, scene.up, frame)
         said = f"frame {frame}, in which the body stands most upright"
-        return replace(chosen, said=said), f"where nothing is turned no body stands; it is taken to rest in {said}"
+        return replace(
+            chosen, said=said
+        ), f"where nothing is turned no body stands; it is taken to rest in {said}"
 
 
 def _most_upright(motion: Motion, scene: Scene, begins: Mapping[str, int]) -> int:
@@ -83,7 +90,12 @@ def default_turns(motion: Motion, rest: MotionRest, stands: Mapping[str, Stand])
     def hang(part: str, ends: tuple[str, ...], before: Floats) -> Floats:
         if part not in by_part:
             return before
-        way = _way(motion, rest, stands[by_part[part]], [stands[by_part[end]].joint for end in ends if end in by_part])
+        way = _way(
+            motion,
+            rest,
+            stands[by_part[part]],
+            [stands[by_part[end]].joint for end in ends if end in by_part],
+        )
         turn = multiply(shortest_turn(rotated(before, _DOWN), way), before) if np.any(way) else before
         found[by_part[part]] = turn
         return turn
@@ -96,17 +108,23 @@ def default_turns(motion: Motion, rest: MotionRest, stands: Mapping[str, Stand])
                 turn = hang(f"{side}_hand", (f"{side}_middle", f"{side}_index"), turn)
         for name, stand in stands.items():
             if stand.part in [f"{side}_{finger}" for finger in FINGERS]:
-                found[name] = turn_of_hand(found, by_part, side, facing)
+                found[name] = _turn_of_hand(found, by_part, side, facing)
         if f"{side}_foot" in by_part:
             foot = stands[by_part[f"{side}_foot"]]
             toe = [stands[by_part[f"{side}_toe"]].joint] if f"{side}_toe" in by_part else []
             way = _way(motion, rest, foot, toe)
-            turn = multiply(heading_turn(rotated(facing, _FORWARD), way), facing) if np.any(way[[0, 2]]) else facing
+            turn = (
+                multiply(heading_turn(rotated(facing, _FORWARD), way), facing)
+                if np.any(way[[0, 2]])
+                else facing
+            )
             found |= {by_part[part]: turn for part in (f"{side}_foot", f"{side}_toe") if part in by_part}
     return found
 
 
-def turn_of_hand(found: Mapping[str, Floats], by_part: Mapping[str, str], side: str, facing: Floats) -> Floats:
+def _turn_of_hand(
+    found: Mapping[str, Floats], by_part: Mapping[str, str], side: str, facing: Floats
+) -> Floats:
     """The turn of the lowest part of an arm that there is, which its fingers share."""
     known = [by_part[f"{side}_{part}"] for part in ("hand", "forearm", "arm") if f"{side}_{part}" in by_part]
     return found[known[0]] if known else facing
@@ -124,11 +142,9 @@ def _facing(rest: MotionRest, stands: Mapping[str, Stand], by_part: Mapping[str,
 
 
 def _way(motion: Motion, rest: MotionRest, stand: Stand, ends: list[int]) -> Floats:
-    """(3,) where a bone points at rest: to the first of ``ends``, else to the farthest joint that hangs on it;
-    zero where nothing does."""
+    """(3,) where a bone points at rest: to the first of ``ends``, else to the farthest joint below it."""
     start = rest.places[stand.joint]
     if ends:
         return np.asarray(rest.places[ends[0]] - start, np.float64)
-    below = [child for child in motion.skeleton.children[stand.joint]]
-    ways = [rest.places[child] - start for child in below]
+    ways = [rest.places[child] - start for child in motion.skeleton.children[stand.joint]]
     return np.asarray(max(ways, key=np.linalg.norm, default=np.zeros(3)), np.float64)
