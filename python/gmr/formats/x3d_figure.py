@@ -143,7 +143,7 @@ def _scale(found: Mapping[str, Floats]) -> float:
 
 
 def _tip_vectors(body: Humanoid) -> dict[str, Floats]:
-    """(3,) metres by name of the outermost joints: in the default pose the vector to the end of their bone."""
+    """(3,) metres by name of the outermost joints: the default vector to the end of their bone."""
     skeleton, bone_slots = body.motion.skeleton, body.motion.skeleton.bone_slots
     inner = {body.standing_above(name) for name in body.stands}
     found = {}
