@@ -4,6 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 REPORT ?= gmr-demo/report.html
 VALIDATOR := gltf-validator@2.0.0-dev.3.10
+BROWSER := x_ite@15.0.1
 # maturin lies in .venv/ already, so the build needs no environment of its own.
 INSTALL := . $(BIN)/activate && python -m pip install --quiet --no-build-isolation
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
@@ -68,8 +69,8 @@ $(VENV)/.gmr: $(VENV)/.tools $(SOURCES)
 $(VENV)/.develop: $(VENV)/.gmr
 	@echo "Installing what tests and benchmarks need ..."
 	@$(INSTALL) --editable ".[report,bench,dev]"
-	@npm install --silent --no-audit --no-fund --no-save --prefix .node $(VALIDATOR) || \
-	echo "npm is missing or has failed: written glTF files will not be shown to the Khronos glTF-Validator."
+	@npm install --silent --no-audit --no-fund --no-save --prefix .node $(VALIDATOR) $(BROWSER) || \
+	echo "npm is missing or has failed: written files will be shown neither to the Khronos glTF-Validator nor to X_ITE."
 	@touch $@
 
 check-machine:

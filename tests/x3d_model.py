@@ -1,8 +1,8 @@
-"""An X3D file held against the object model of X3D, from which the Web3D Consortium makes schema and libraries.
+"""An X3D file held against the object model of X3D, which the Web3D Consortium makes from its schema.
 
-The model comes as the package ``x3d`` (X3DPSAIL): which nodes there are, of which kinds, which fields they have,
-of which type and access. Its own constructors take nearly anything; here everything is checked, values by the
-grammar of their types in ISO/IEC 19776-1.
+The model comes as the package ``x3d`` (X3DPSAIL): which nodes there are, of which kinds, which fields they
+have, of which type and access. Its own constructors take nearly anything; here everything is checked, values
+by the grammar of their types in ISO/IEC 19776-1.
 """
 
 from __future__ import annotations
@@ -20,6 +20,18 @@ with contextlib.redirect_stdout(io.StringIO()):  # it greets
 
 _NUMBER = r"[+-]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[Ee][+-]?[0-9]+)?"
 _WIDTHS = {"Float": 1, "Double": 1, "Time": 1, "Vec2f": 2, "Vec3f": 3, "Color": 3, "Rotation": 4}
+_EVENTS = {
+    "TimeSensor": {"fraction_changed": ("SFFloat", "outputOnly")},
+    "OrientationInterpolator": {
+        "set_fraction": ("SFFloat", "inputOnly"),
+        "value_changed": ("SFRotation", "outputOnly"),
+    },
+    "PositionInterpolator": {
+        "set_fraction": ("SFFloat", "inputOnly"),
+        "value_changed": ("SFVec3f", "outputOnly"),
+    },
+}
+"""Fields that are only events, which the package leaves out (ISO/IEC 19775-1, 8.4.1 and 19.4)."""
 _OF_XML = {"DEF", "USE", "containerField"}
 _STATEMENTS = {"X3D", "head", "Scene", "component", "meta", "ROUTE"}
 _NAME = re.compile(r"[^\s\"'#+,\-.\\\[\]{}\x00-\x1f\x7f0-9][^\s\"'#,.\\\[\]{}\x00-\x1f\x7f]*")
@@ -47,7 +59,8 @@ def _fields(tag: str) -> dict[str, tuple[str, str]]:
 
 
 def _plain(value: Any) -> str:
-    return str(getattr(value, "name", value)).rsplit(".", 1)[-1]
+    """The name of a type or an access, which the model has as a function that gives it."""
+    return str(value.__name__)
 
 
 def _statement_faults(root: ET.Element) -> Iterator[str]:
@@ -59,7 +72,8 @@ def _statement_faults(root: ET.Element) -> Iterator[str]:
     if children != sorted(children, key=["component", "unit", "meta"].index):
         yield f"a head holds components, then units, then metas, not {children}"
     for component in root.iter("component"):
-        if component.get("name") not in model.COMPONENTNAMECHOICES or not component.get("level", "").isdigit():
+        known = component.get("name") in model.COMPONENTNAMECHOICES
+        if not known or not component.get("level", "").isdigit():
             yield f"component {component.attrib}"
     for meta in root.iter("meta"):
         if set(meta.attrib) != {"name", "content"}:
@@ -148,7 +162,7 @@ def _route_faults(route: ET.Element, names: dict[str, str]) -> Iterator[str]:
         ("toNode", "toField", ("inputOnly", "inputOutput"), "set_", ""),
     ):
         tag, name = names.get(route.get(node, "")), route.get(field, "")
-        fields = _fields(tag) if tag else {}
+        fields = {**_fields(tag), **_EVENTS.get(tag, {})} if tag else {}
         bare = name.removeprefix(prefix).removesuffix(suffix)
         kind, access = fields.get(name) or (
             fields[bare] if fields.get(bare, ("", ""))[1] == "inputOutput" else ("", "")

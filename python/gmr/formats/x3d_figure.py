@@ -22,6 +22,8 @@ _RIGID = 2e-6
 ten-thousandth that the file keeps."""
 _STILL = 1e-7
 """Length of the change of a quaternion below which a joint does not turn: what seven decimals can say."""
+_SHARES = {"skullbase": 0.45, "metatarsophalangeal_2": 0.7}
+"""How far along neck and head, or along a foot, a joint is that the motion has not; as H-Anim has it."""
 _LOW = ("talocrural", "metatarsophalangeal_2")
 """Joints that are near the ground, without the letter of their side."""
 
@@ -102,9 +104,10 @@ def figure_of(body: Humanoid) -> Figure:
     )
 
 
-def _centres(body: Humanoid, vectors: Mapping[str, Floats], tips: Mapping[str, Floats]) -> dict[str, Floats]:
+def _centres(body: Humanoid, vectors: Mapping[str, Floats], tips: dict[str, Floats]) -> dict[str, Floats]:
     """Default places of all joints, the root's at 0; those that the motion has not are put between those that
-    it has, at the end of the bone above, or where H-Anim's own body has them."""
+    it has, on the bone above, which then ends in them (``tips`` is changed), or where H-Anim's own body has
+    them."""
     found = {"humanoid_root": np.zeros(3)}
     for name in body.stands:
         if body.above[name]:
@@ -120,7 +123,9 @@ def _centres(body: Humanoid, vectors: Mapping[str, Floats], tips: Mapping[str, F
             share = 1.0 if name == "sacroiliac" else 0.5
             found[name] = found[above] + share * (np.mean(below, axis=0) - found[above])
         elif above in tips:
-            found[name] = found[above] + tips[above]
+            share = _SHARES.get(name if name in _SHARES else name[2:], 1.0)
+            tips[name] = (1 - share) * tips[above]
+            found[name] = found[above] + share * tips.pop(above)
         else:
             own, its = articulations()[name].centre, articulations()[above].centre
             assert own is not None

@@ -13,10 +13,10 @@ from gmr.errors import SkeletonError
 from gmr.formats.hanim import FINGERS, LIMBS, LOA_1, NECK, SPINE, articulations
 from gmr.listing import quoted
 from gmr.motion import Motion
+from gmr.skinning.driving.body_of_motion import body_of_motion
 from gmr.skinning.driving.body_parts import Body
 from gmr.skinning.driving.following import Bone, bones_of
 from gmr.skinning.driving.parts import LEG_PARTS, named_parts, namings
-from gmr.skinning.driving.retarget import body_of_motion
 
 __all__ = ["Stand", "find_parts", "levels", "named_stands", "tree_of"]
 
