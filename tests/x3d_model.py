@@ -18,6 +18,8 @@ from typing import Any
 with contextlib.redirect_stdout(io.StringIO()):  # it greets
     import x3d.x3d as model
 
+__all__ = ["faults", "model"]
+
 _NUMBER = r"[+-]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[Ee][+-]?[0-9]+)?"
 _WIDTHS = {"Float": 1, "Double": 1, "Time": 1, "Vec2f": 2, "Vec3f": 3, "Color": 3, "Rotation": 4}
 _EVENTS = {
