@@ -318,3 +318,24 @@ def test_info_names_what_was_done_to_the_forest(walk_path: Path, tmp_path: Path,
         "LeftFoot cut from LeftLeg",
         "the tree of Hips turned over onto Head",
     ]
+
+
+def test_x3d_is_in_metres_and_a_guessed_unit_is_said(
+    walk_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    guessed, stated = tmp_path / "guessed.x3d", tmp_path / "stated.x3d"
+    assert run("convert", walk_path, guessed) == 0
+    assert "taken to be in cmu" in capsys.readouterr().err
+    assert run("convert", walk_path, stated, "--from-unit", "cmu") == 0
+    assert capsys.readouterr().err == ""
+    assert stated.read_bytes() == guessed.read_bytes()
+    assert run("convert", tmp_path / "guessed.x3d", tmp_path / "back.bvh") == 1
+    assert "gmr writes X3D but does not read it" in capsys.readouterr().err
+    assert run("info", guessed) == 1
+    assert "gmr writes X3D but does not read it" in capsys.readouterr().err
+
+
+def test_a_folder_becomes_one_of_x3d(takes: Path, tmp_path: Path) -> None:
+    assert run("convert", takes, tmp_path / "out", "--to", "x3d", "--fps", "30") == 1  # one is broken
+    written = sorted(path.suffix for path in (tmp_path / "out").rglob("*.*"))
+    assert written == [".x3d", ".x3d"]

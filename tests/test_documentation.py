@@ -81,6 +81,7 @@ EXAMPLES = {
     "fastest_foot.py": ["takes"],
     "compare_with_mirrored.py": ["takes"],
     "drive_a_character.py": ["takes", "poses.npz"],
+    "x3d_postures.py": ["takes/09_01.bvh", "postures"],
 }
 
 

@@ -101,10 +101,10 @@ def viewpoint(figure: Figure) -> str:
     stature = figure.stature
     reach = float(np.hypot(*(high - low)[[0, 2]]))
     ahead = _heading(figure)
-    aside = ahead + np.pi / 2 if reach > stature else ahead + np.pi / 6
+    aside = ahead + np.pi / 2 if reach > stature else ahead + np.pi / 4
     turn = multiply(about(_UP, np.asarray(aside)), about(np.array([1.0, 0.0, 0.0]), np.asarray(-0.12)))
-    target = (low + high) / 2
-    wide = max((reach + 0.8 * stature) / _WIDE, 1.4 * stature)
+    target = (low + high) / 2 - 0.05 * stature * _UP
+    wide = max((reach + 0.8 * stature) / _WIDE, 1.5 * stature)
     far = wide / 2 / np.tan(_FIELD_OF_VIEW / 2)
     place = target + far * np.array(
         [np.sin(aside) * np.cos(0.12), np.sin(0.12), np.cos(aside) * np.cos(0.12)]
