@@ -31,8 +31,8 @@ def write(motion: Motion, target: Target, format: str | None = None) -> None:
         motion: what was read as rows is written with the very same values, names and channels.
         target: a path, or a file open for writing, text or binary. With a path to an .amc its .asf is written
             beside it, both or none; an .asf alone, and an .amc into an open file, hold half of a motion.
-        format: "bvh", "amc", "asf", "gmr" (text) or "gmrb" (binary); told by the suffix where left out, BVH
-            for an open file.
+        format: "bvh", "amc", "asf", "gmr" (text), "gmrb" (binary), "glb" or "x3d"; told by the suffix where
+            left out, BVH for an open file.
 
     Raises:
         GmrError: the file cannot be written; what was there is untouched.

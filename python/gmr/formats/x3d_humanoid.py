@@ -33,7 +33,8 @@ __all__ = ["BLOCK", "Humanoid", "Moves", "humanoid_of"]
 Floats = NDArray[np.float64]
 
 BLOCK = 1 << 12
-"""Frames that are looked at together."""
+"""Frames that are looked at together, so that a long motion needs no memory for all of its rotations; the body
+is looked for in as many at the beginning."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +141,7 @@ def humanoid_of(motion: Motion, names: Mapping[str, str] | None, rest: int | Non
     _check_finite(at_home)
     scene = scene_of(at_home)
     metres = 1 / scene.unit.per_metre("X3D, whose unit is the metre,")
-    parts = find_parts(at_home, scene, names or {})
+    parts = find_parts(at_home[:BLOCK], scene, names or {})
     begins = {part: stands[0].joint for part, stands in parts.items()}
     resting, odd = rest_of(at_home, scene, begins, rest)
     stands = named_stands(parts, resting.places[:, 1])
