@@ -33,8 +33,8 @@ __all__ = ["BLOCK", "Humanoid", "Moves", "humanoid_of"]
 Floats = NDArray[np.float64]
 
 BLOCK = 1 << 12
-"""Frames that are looked at together, so that a long motion needs no memory for all of its rotations; the body
-is looked for in as many at the beginning."""
+"""Frames that are looked at together, so that a long motion needs no memory for all of its rotations; the
+body is looked for in as many at the beginning."""
 
 
 @dataclass(frozen=True, eq=False)
