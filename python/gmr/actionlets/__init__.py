@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from gmr.actionlets.body import Body
     from gmr.actionlets.dofs import Dof
     from gmr.actionlets.measured import Measured
+    from gmr.actionlets.mutation import mutate, substituted, variation
+    from gmr.actionlets.operations import concatenate, insert, is_periodic, repeated, stretched, synchronise
     from gmr.actionlets.pictures import film_strip
     from gmr.actionlets.reading import read
     from gmr.actionlets.score import Score
@@ -28,10 +30,19 @@ __all__ = [
     "Piece",
     "Score",
     "Track",
+    "concatenate",
     "film_strip",
+    "insert",
+    "is_periodic",
+    "mutate",
     "posing",
     "read",
+    "repeated",
+    "stretched",
+    "substituted",
+    "synchronise",
     "travel",
+    "variation",
 ]
 
 _HOMES = {
@@ -42,8 +53,17 @@ _HOMES = {
     "Piece": "gmr.actionlets.track",
     "Score": "gmr.actionlets.score",
     "Track": "gmr.actionlets.track",
+    "concatenate": "gmr.actionlets.operations",
     "film_strip": "gmr.actionlets.pictures",
+    "insert": "gmr.actionlets.operations",
+    "is_periodic": "gmr.actionlets.operations",
+    "mutate": "gmr.actionlets.mutation",
     "read": "gmr.actionlets.reading",
+    "repeated": "gmr.actionlets.operations",
+    "stretched": "gmr.actionlets.operations",
+    "substituted": "gmr.actionlets.mutation",
+    "synchronise": "gmr.actionlets.operations",
+    "variation": "gmr.actionlets.mutation",
 }
 _MODULES = frozenset({"posing", "travel"})
 

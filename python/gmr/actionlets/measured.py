@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gmr.actionlets.actionlet import checked_duration
+from gmr.actionlets.actionlet import SYMMETRIC, checked_duration
+from gmr.actionlets.bell import share
 from gmr.arrays import frozen
 from gmr.errors import ActionletError
 
@@ -109,12 +110,14 @@ class Measured:
         return np.where(inside, self._at(t, 2), 0.0)
 
     def between(self, start: float, end: float) -> Measured:
-        """The same course between other angles: scaled; where it ends at its start, a slope is added."""
-        if self.travel:
+        """The same course between other angles: scaled; a course that is more to and fro than travel is left
+        its size, and led over by a symmetric actionlet."""
+        if 2 * abs(self.travel) > float(np.ptp(self.angles)):
             angles = start + (self.angles - self.start) * ((end - start) / self.travel)
         else:
-            angles = self.angles - self.start + np.linspace(start, end, len(self.angles))
-        angles[-1] = end
+            over = share(np.linspace(0, 1, len(self.angles)), SYMMETRIC)
+            angles = self.angles + (start - self.start) * (1 - over) + (end - self.end) * over
+        angles[[0, -1]] = start, end
         return replace(self, angles=angles)
 
     def lasting(self, duration: float) -> Measured:

@@ -126,6 +126,20 @@ class Score:
         """
         return Score({dof: self[dof] for dof in dofs})
 
+    def renamed(self, names: Mapping[str, str]) -> Score:
+        """The same tracks under other names; those that ``names`` does not have keep theirs.
+
+        Raises:
+            ActionletError: it has no track of that name, or two would have the same.
+        """
+        for name in names:
+            self[name]
+        found = [names.get(dof, dof) for dof in self.dofs]
+        doubled = [name for name in found if found.count(name) > 1]
+        if doubled:
+            raise ActionletError(f"two tracks would be named '{doubled[0]}'; give each a name of its own")
+        return Score(dict(zip(found, self.tracks.values(), strict=True)))
+
     def beside(self, other: Score) -> Score:
         """Both scores at once: the tracks of both, which last as long and name different degrees of freedom.
 

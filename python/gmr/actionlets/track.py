@@ -167,12 +167,8 @@ class Track:
         # A rounding error's worth of a piece is none of it.
         first = min(int(np.searchsorted(bounds, begin + slack, side="right")) - 1, len(self.pieces) - 1)
         last = max(int(np.searchsorted(bounds, end - slack, side="left")), first + 1)
-        lead, trail = begin - bounds[first], bounds[last] - end
-        return Track(
-            self.pieces[first:last],
-            float(lead) if lead > slack else 0.0,
-            float(trail) if trail > slack else 0.0,
-        )
+        lead, trail = float(begin - bounds[first]), float(bounds[last] - end)
+        return _shown(self.pieces[first:last], max(lead, 0.0), max(trail, 0.0), slack)
 
     @cached_property
     def _flat(self) -> _Flat:
@@ -236,6 +232,22 @@ class _Flat:
 
     def _measured_at(self, t: Floats, wanted: NDArray[np.bool_], order: int) -> Floats:
         return cubic(self.knots, self.values, self.slopes, np.where(wanted, t, self.knots[0]), order)
+
+
+def _shown(pieces: tuple[Piece, ...], lead: float, trail: float, slack: float) -> Track:
+    """The track of these pieces; of a silence at its ends there is no part that it does not show."""
+    kept = list(pieces)
+    if len(kept) == 1 and _is_still(kept[0]):
+        return Track((kept[0].lasting(kept[0].duration - lead - trail),))
+    if lead and _is_still(kept[0]):
+        kept[0], lead = kept[0].lasting(kept[0].duration - lead), 0.0
+    if trail and _is_still(kept[-1]):
+        kept[-1], trail = kept[-1].lasting(kept[-1].duration - trail), 0.0
+    return Track(tuple(kept), lead if lead > slack else 0.0, trail if trail > slack else 0.0)
+
+
+def _is_still(piece: Piece) -> bool:
+    return isinstance(piece, Actionlet) and piece.is_silence
 
 
 def _extreme(place: int, extreme: Sequence[float]) -> tuple[float, float, float]:
