@@ -12,6 +12,10 @@ if TYPE_CHECKING:
 
     from gmr.actionlets import posing, travel
     from gmr.actionlets.actionlet import Actionlet
+    from gmr.actionlets.actions.action import Action
+    from gmr.actionlets.actions.library import Library, library
+    from gmr.actionlets.actions.performance import Performance
+    from gmr.actionlets.actions.taking import Take
     from gmr.actionlets.body import Body
     from gmr.actionlets.dofs import Dof
     from gmr.actionlets.measured import Measured
@@ -23,17 +27,22 @@ if TYPE_CHECKING:
     from gmr.actionlets.track import Piece, Track
 
 __all__ = [
+    "Action",
     "Actionlet",
     "Body",
     "Dof",
+    "Library",
     "Measured",
+    "Performance",
     "Piece",
     "Score",
+    "Take",
     "Track",
     "concatenate",
     "film_strip",
     "insert",
     "is_periodic",
+    "library",
     "mutate",
     "posing",
     "read",
@@ -46,17 +55,22 @@ __all__ = [
 ]
 
 _HOMES = {
+    "Action": "gmr.actionlets.actions.action",
     "Actionlet": "gmr.actionlets.actionlet",
     "Body": "gmr.actionlets.body",
     "Dof": "gmr.actionlets.dofs",
+    "Library": "gmr.actionlets.actions.library",
     "Measured": "gmr.actionlets.measured",
+    "Performance": "gmr.actionlets.actions.performance",
     "Piece": "gmr.actionlets.track",
     "Score": "gmr.actionlets.score",
+    "Take": "gmr.actionlets.actions.taking",
     "Track": "gmr.actionlets.track",
     "concatenate": "gmr.actionlets.operations",
     "film_strip": "gmr.actionlets.pictures",
     "insert": "gmr.actionlets.operations",
     "is_periodic": "gmr.actionlets.operations",
+    "library": "gmr.actionlets.actions.library",
     "mutate": "gmr.actionlets.mutation",
     "read": "gmr.actionlets.reading",
     "repeated": "gmr.actionlets.operations",
