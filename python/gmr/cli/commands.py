@@ -13,7 +13,7 @@ import click
 
 __all__ = ["gmr"]
 
-COMMANDS: Final = ("evaluate", "info", "convert", "roots", "view", "skin", "bench", "demo")
+COMMANDS: Final = ("evaluate", "info", "convert", "roots", "view", "skin", "synthesize", "bench", "demo")
 
 
 class Commands(click.Group):
@@ -56,6 +56,7 @@ def gmr() -> None:
     gmr convert takes/ out/ --fps 60 --mirror
     gmr roots walk.bvh --set Hips,LeftHand,RightHand
     gmr skin figure.glb walk.bvh walking.glb       a motion drives a character
+    gmr synthesize walk --speed 1.4 --out walk.bvh     a motion that nobody recorded
     gmr view walk.bvh --open                       look at it in a browser
     gmr evaluate takes/           what a set of locomotion clips can do, as a report
     gmr COMMAND --help            more examples
