@@ -20,7 +20,7 @@ from marker_scene import noisy, worn
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-BLOCK = re.compile(r"^```(python|console)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(r"^```(python|console|toml)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
 def blocks(page: Path, language: str) -> list[str]:
@@ -34,7 +34,7 @@ def pages_with(language: str) -> list[Path]:
 @pytest.fixture
 def reader_folder(tmp_path: Path) -> Path:
     """What the documentation assumes: two walks as walk.bvh and walk.c3d, the latter as mips.c3d too,
-    figure.gltf, man.glb, 07_01.amc, 07.asf, clips in takes/."""
+    figure.gltf, man.glb, 07_01.amc, 07.asf, mine.toml with the action of docs/actions.md, clips in takes/."""
     takes = tmp_path / "takes"
     takes.mkdir()
     for clip in ("02_01", "07_01", "07_12", "08_01", "09_01", "09_02"):
@@ -46,6 +46,7 @@ def reader_folder(tmp_path: Path) -> Path:
     walk = recorded(tmp_path / "walk.c3d", noisy(worn(), 0.5)).read_bytes()
     (tmp_path / "mips.c3d").write_bytes(as_written_by(walk, "MIPS"))
     gmr.write_character(figures.body(), tmp_path / "man.glb")
+    (tmp_path / "mine.toml").write_text(blocks(ROOT / "docs" / "actions.md", "toml")[0], encoding="utf-8")
     return tmp_path
 
 
