@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from importlib import resources
 from typing import Any
 
-__all__ = ["attributes", "element", "items", "json_text", "own", "script_hash", "text"]
+__all__ = ["attributes", "element", "items", "json_text", "own", "script_hash", "section", "text"]
 
 
 def own(package: str, name: str) -> str:
@@ -41,6 +41,12 @@ def element(tag: str, content: str, **values: object) -> str:
 def items(values: Iterable[object]) -> str:
     """List items of plain texts."""
     return "".join(element("li", text(value)) for value in values)
+
+
+def section(name: str, title: str, lead: str, content: str) -> str:
+    """A section of a page: its heading, a line below it where there is one, and HTML."""
+    head = element("h2", text(title)) + (element("p", text(lead), class_="lead") if lead else "")
+    return element("section", head + content, id=name)
 
 
 def json_text(value: Any) -> str:

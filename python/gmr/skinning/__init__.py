@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from gmr.skinning.binding import Binding, BindingReport, BindMethod, bind
     from gmr.skinning.blending import Hemisphere, Method, Skin
     from gmr.skinning.character import Character
-    from gmr.skinning.driving import Driven, DrivingReport, drive
+    from gmr.skinning.driving import Driven, DrivingReport, Retargeted, drive, retarget
     from gmr.skinning.keyframes import Animation, Channel
     from gmr.skinning.nodes import Nodes
     from gmr.skinning.part import Part
@@ -28,11 +28,13 @@ __all__ = [
     "Method",
     "Nodes",
     "Part",
+    "Retargeted",
     "Skin",
     "Texture",
     "TextureUse",
     "bind",
     "drive",
+    "retarget",
 ]
 
 # Imported when first used: a reader of files needs no kernels, and a kernel no files.
@@ -50,11 +52,13 @@ _HOMES = {
     "Method": "gmr.skinning.blending",
     "Nodes": "gmr.skinning.nodes",
     "Part": "gmr.skinning.part",
+    "Retargeted": "gmr.skinning.driving",
     "Skin": "gmr.skinning.blending",
     "Texture": "gmr.skinning.appearance",
     "TextureUse": "gmr.skinning.appearance",
     "bind": "gmr.skinning.binding",
     "drive": "gmr.skinning.driving",
+    "retarget": "gmr.skinning.driving",
 }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -11,7 +12,7 @@ from gmr.evaluation.result import Evaluation
 from gmr.pages.figure import Figure
 from gmr.table import Table
 
-__all__ = ["HOVER", "cells_of_trials", "trial_map", "trial_sets", "trials_of"]
+__all__ = ["HOVER", "cells_of_trials", "place_of_trial", "trial_map", "trial_sets", "trials_of"]
 
 
 def trial_map(evaluation: Evaluation, measure: Measure, scenario: str, tracking: str) -> Figure:
@@ -61,8 +62,8 @@ HOVER: Final = {
 }
 
 
-def _place() -> dict[str, Any]:
-    """Where a trial stands on a map, and what it tells when it is pointed at."""
+def place_of_trial(hover: Mapping[str, tuple[str, str]]) -> dict[str, Any]:
+    """Where a trial stands on a map, and what it tells when it is pointed at: title and format by column."""
     return {
         "x": {
             "field": "turn_rate_deg",
@@ -84,7 +85,7 @@ def _place() -> dict[str, Any]:
         "tooltip": [
             {"field": "speed", "title": "Asked for, m/s", "format": "~g"},
             {"field": "turn_rate_deg", "title": "Asked for, deg/s", "format": "~g"},
-            *({"field": name, "title": title, "format": form} for name, (title, form) in HOVER.items()),
+            *({"field": name, "title": title, "format": form} for name, (title, form) in hover.items()),
         ],
     }
 
@@ -100,7 +101,7 @@ def cells_of_trials(rows: int, colour: dict[str, Any], *layers: dict[str, Any]) 
         "height": max(44 * rows, 60),
         "data": {"name": "trials"},
         "resolve": {"scale": {"color": "independent"}},
-        "encoding": _place(),
+        "encoding": place_of_trial(HOVER),
         "layer": [cells, *layers],
     }
 

@@ -16,7 +16,7 @@ from gmr.evaluation.report.replay import replay_sentence
 from gmr.evaluation.report.tables import Column, clip_columns, flow_columns, html_table, trial_columns
 from gmr.evaluation.result import Evaluation, Summary
 from gmr.evaluation.words import count, duration
-from gmr.pages.document import element, items, own, text
+from gmr.pages.document import element, items, own, section, text
 
 __all__ = ["clip_groups", "facts", "sections"]
 
@@ -47,26 +47,26 @@ def sections(evaluation: Evaluation, figures: Sequence[Figure]) -> str:
         _verdict(evaluation),
         _failed(evaluation.failed),
         _notes(evaluation.notes),
-        _section(
+        section(
             "coverage",
             "What the dataset holds",
             "Speed and turn rate, as means over one second that slides through every clip.",
             _scatter(drawn["coverage_scatter"], evaluation) + _figure(drawn["coverage_density"]),
         ),
-        _section(
+        section(
             "accuracy",
             "How well it follows a path",
             "In every trial a character driven by motion matching is sent along a circle, or straight ahead, "
             "at one speed and one turn rate. A cell is a trial; what stands after ± is its spread over time.",
             _maps(maps, evaluation),
         ),
-        _section(
+        section(
             "relevance",
             "Which clips carry it",
             "",
             _figure(drawn["clip_usage"]) + _never(evaluation) + _figure(drawn["frame_usage"]),
         ),
-        _section(
+        section(
             "transitions",
             "How it gets from clip to clip",
             "A jump is a step at which the frame shown is not the next one of its clip.",
@@ -76,7 +76,7 @@ def sections(evaluation: Evaluation, figures: Sequence[Figure]) -> str:
         ),
         _replay(evaluation),
         _tables(evaluation),
-        _section("method", "How it was measured", SOURCE, terms(evaluation.summary)),
+        section("method", "How it was measured", SOURCE, terms(evaluation.summary)),
     ]
     return "\n".join(filter(None, parts))
 
@@ -92,11 +92,6 @@ def clip_groups(evaluation: Evaluation) -> tuple[list[str], dict[str, list[str]]
         "Clips never played": names[played == 0].tolist(),
     }
     return clips, {label: members for label, members in groups.items() if members}
-
-
-def _section(name: str, title: str, lead: str, content: str) -> str:
-    head = element("h2", text(title)) + (element("p", text(lead), class_="lead") if lead else "")
-    return element("section", head + content, id=name)
 
 
 def _verdict(evaluation: Evaluation) -> str:
@@ -228,11 +223,11 @@ def _folded(title: str, content: str, name: str) -> str:
 
 def _replay(evaluation: Evaluation) -> str:
     sentence = replay_sentence(evaluation.replay)
-    return _section("replay", "The worst trial, replayed", sentence, own(__package__, "player.html"))
+    return section("replay", "The worst trial, replayed", sentence, own(__package__, "player.html"))
 
 
 def _tables(evaluation: Evaluation) -> str:
-    return _section(
+    return section(
         "tables",
         "Tables",
         "Metres, seconds, degrees. A header sorts; the CSV files hold every column and row.",

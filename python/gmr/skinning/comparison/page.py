@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gmr.pages.document import element, text
+from gmr.pages.document import element, section, text
 from gmr.pages.figure import Figure
 from gmr.pages.page import Page
 from gmr.skinning.comparison.figures import capsule_figures, clip_figures
@@ -31,13 +31,13 @@ def page(of: Comparison, pictures: Sequence[Picture], film: bytes | None) -> str
         sections="\n".join(
             [
                 _verdict(of),
-                _section(
+                section(
                     "character",
                     "The character in the clip",
                     "Frames in which the methods differ most, drawn to one scale.",
                     _film(film) + _pictures(pictures, "clip") + _figures(clip),
                 ),
-                _section(
+                section(
                     "capsule",
                     "The capsule",
                     "Two bones in a tube, bent and twisted: the methods alone, on no character's shape.",
@@ -100,14 +100,9 @@ def _method(of: Comparison) -> str:
         "joint. Centres of rotation: Le and Hodgins 2016.",
         "All numbers stand in frames.csv, apart.csv and capsule.csv beside this page.",
     ]
-    return _section(
+    return section(
         "method", "Method", "", element("ul", "".join(element("li", text(word)) for word in words))
     )
-
-
-def _section(name: str, title: str, lead: str, content: str) -> str:
-    head = element("h2", text(title)) + (element("p", text(lead), class_="lead") if lead else "")
-    return element("section", head + content, id=name)
 
 
 def _figures(figures: Sequence[Figure]) -> str:

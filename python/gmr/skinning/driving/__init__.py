@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
+from gmr.skinning.driving.drive_character import drive
 from gmr.skinning.driving.driven import Driven, DrivingReport
-from gmr.skinning.driving.retarget import drive
+from gmr.skinning.driving.other_skeleton import Retargeted, retarget
 
-__all__ = ["Driven", "DrivingReport", "drive"]
+__all__ = ["Driven", "DrivingReport", "Retargeted", "drive", "retarget"]

@@ -1,0 +1,8 @@
+"""Completion: what a dataset cannot do is made, and the dataset is evaluated again with it."""
+
+from __future__ import annotations
+
+from gmr.completion.complete import Completion, Filler, complete
+from gmr.completion.holes import Ask, holes
+
+__all__ = ["Ask", "Completion", "Filler", "complete", "holes"]

@@ -1,0 +1,144 @@
+"""A dataset is evaluated, what it cannot do is made, and it is evaluated again: with what got worse.
+
+Source: spec of dataset evaluation, completion. The clips are judged by what the character does with them, not
+by what they hold: the second evaluation runs every trial of the first again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.completion.holes import Ask, grid_of, holes
+from gmr.errors import DatasetError
+from gmr.evaluation.evaluate import evaluate
+from gmr.evaluation.result import Evaluation
+from gmr.motion import Motion
+from gmr.table import Table
+
+__all__ = ["Completion", "Filler", "complete"]
+
+Filler: TypeAlias = Callable[[Ask, Motion], Motion | None]
+"""Makes a clip of a movement on the skeleton of another motion; None where it cannot."""
+
+Progress: TypeAlias = Callable[[str, int, int], object]
+
+
+@dataclass(frozen=True, eq=False)
+class Completion:
+    """A dataset before and after its holes were filled.
+
+    Attributes:
+        before, after: the two evaluations, of the same trials.
+        added: the clips that were made, by name.
+        asked: what each of them was made for.
+        not_made: holes that nothing could be made for.
+    """
+
+    before: Evaluation
+    after: Evaluation
+    added: Mapping[str, Motion]
+    asked: Mapping[str, Ask]
+    not_made: tuple[Ask, ...]
+
+    @cached_property
+    def trials(self) -> Table:
+        """One row a trial: what was asked, whether it held before and after, and the mean offset, speed error
+        and turn rate error of both; metres, m/s and degrees/s."""
+        before, after = grid_of(self.before), grid_of(self.after)
+        speeds, turns = np.meshgrid(before.speeds, before.turn_rates_deg, indexing="ij")
+        columns: dict[str, NDArray[Any]] = {"speed": speeds.ravel(), "turn_rate_deg": turns.ravel()}
+        for name, grid in (("before", before), ("after", after)):
+            columns[f"held_{name}"] = grid.held.ravel()
+            columns[f"offset_{name}"] = grid.offset.ravel()
+            columns[f"speed_error_{name}"] = grid.speed_error.ravel()
+            columns[f"turn_rate_error_deg_{name}"] = grid.turn_rate_error_deg.ravel()
+        return Table(columns)
+
+    @cached_property
+    def clips(self) -> Table:
+        """One row a clip that was made: what for, its ``seconds``, how long it is played in all trials
+        (``played_seconds``), and whether the trial that it was made for now ``holds``."""
+        played = dict(
+            zip(self.after.measured.clips["clip"], self.after.measured.clips["played_seconds"], strict=True)
+        )
+        held = {(row["speed"], row["turn_rate_deg"]): row["held_after"] for row in self.trials.rows()}
+        asks = [self.asked[name] for name in self.added]
+        return Table(
+            {
+                "clip": np.array(list(self.added), object),
+                "speed": np.array([ask.speed for ask in asks], np.float64),
+                "turn_rate_deg": np.array([ask.turn_rate_deg for ask in asks], np.float64),
+                "seconds": np.array([m.frame_count * m.frame_time for m in self.added.values()], np.float64),
+                "played_seconds": np.array([float(played.get(name, 0.0)) for name in self.added], np.float64),
+                "holds": np.array([bool(held.get((a.speed, a.turn_rate_deg), False)) for a in asks], bool),
+            }
+        )
+
+
+def complete(
+    motions: Mapping[str, Motion],
+    fill: Filler,
+    *,
+    dataset: str = "motions",
+    progress: Progress | None = None,
+    **settings: Any,
+) -> Completion:
+    """Evaluate a dataset, fill its holes, evaluate it again.
+
+    Args:
+        motions: the clips by name, on one skeleton.
+        fill: makes what is missing; see :func:`gmr.completion.synthesised`.
+        dataset: what the whole is called.
+        progress: called with the name of a phase, how much of it is done, and of how much.
+        settings: of :func:`gmr.evaluate`, for both evaluations.
+
+    Returns:
+        Both evaluations and what was added. A dataset without holes is given back with nothing added.
+
+    Raises:
+        DatasetError: as :func:`gmr.evaluate`; or clips are missing that the first evaluation could use.
+    """
+    tell = progress or (lambda phase, done, of: None)
+
+    def phase(name: str) -> Progress:
+        return lambda what, done, of: tell(f"{name}: {what}", done, of)
+
+    before = evaluate(motions, progress=phase("before"), **settings)
+    like = next(motion for name, motion in motions.items() if name not in before.failed)
+    added: dict[str, Motion] = {}
+    asked: dict[str, Ask] = {}
+    not_made: list[Ask] = []
+    wanted = _with_straight(holes(before))
+    for number, ask in enumerate(wanted):
+        tell("making clips", number, len(wanted))
+        made = fill(ask, like)
+        if made is None:
+            not_made.append(ask)
+            continue
+        name = _unused(f"made_{ask.name}", motions)
+        added[name], asked[name] = made, ask
+    tell("making clips", len(wanted), len(wanted))
+    after = evaluate({**motions, **added}, progress=phase("after"), **settings) if added else before
+    if left_out := sorted(set(after.failed) - set(before.failed)):
+        raise DatasetError(
+            f"{left_out[0]} cannot be evaluated beside the dataset's own clips: {after.failed[left_out[0]]}"
+        )
+    return Completion(before, after, added, asked, tuple(not_made))
+
+
+def _with_straight(asks: Iterable[Ask]) -> tuple[Ask, ...]:
+    """With each speed straight ahead too, for that is how a trial gets to it."""
+    asks = list(asks)
+    return tuple(dict.fromkeys(sorted([*asks, *(ask.straight for ask in asks)])))
+
+
+def _unused(name: str, motions: Mapping[str, Motion]) -> str:
+    while name in motions:
+        name += "_"
+    return name
