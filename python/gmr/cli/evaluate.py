@@ -6,24 +6,20 @@ import json
 import math
 import shutil
 import textwrap
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import click
 
-from gmr.cli.common import Unit, say
+from gmr.cli.common import say
+from gmr.cli.evaluation_options import evaluation_options
+from gmr.cli.outcome import at_place, left_out, trouble_with_files
 from gmr.cli.progress import Phases
-from gmr.errors import GmrError
-from gmr.listing import listed
 
 if TYPE_CHECKING:
     from gmr.evaluation import Evaluation
     from gmr.matching.trial import Tracking
-
-VALUES: Final = "START:STOP:STEP|A,B,C"
-MOST_VALUES: Final = 10_000
 
 EXAMPLES: Final = """
 \b
@@ -42,42 +38,6 @@ Exit codes: 0 all files were evaluated, 1 some or all could not be (they are nam
 """
 
 
-def _values(
-    context: click.Context, option: click.Parameter, text: str | tuple[float, ...] | None
-) -> tuple[float, ...] | None:
-    """Numbers typed as START:STOP:STEP, both ends included, or with commas."""
-    if not isinstance(text, str):
-        return text
-    try:
-        if ":" not in text:
-            return tuple(float(part) for part in text.split(","))
-        start, stop, step = (float(part) for part in text.split(":"))
-    except ValueError:
-        raise click.BadParameter(f"{text!r} is neither START:STOP:STEP nor numbers with commas.") from None
-    steps = (stop - start) / step if step else math.nan
-    if not 0 <= steps < MOST_VALUES:
-        raise click.BadParameter(f"from {start:g} to {stop:g} in steps of {step:g} is no list of numbers.")
-    return tuple(round(start + index * step, 9) for index in range(math.floor(steps + 1e-9) + 1))
-
-
-def _roles(context: click.Context, option: click.Parameter, pairs: tuple[str, ...] | None) -> dict[str, str]:
-    """Joints typed as ROLE=JOINT."""
-    roles: dict[str, str] = {}
-    for text in pairs or ():
-        role, _, joint = text.partition("=")
-        if not (role and joint):
-            raise click.BadParameter(f"{text!r} is not ROLE=JOINT, as in left_foot=foot_l.")
-        if role in roles:
-            raise click.BadParameter(f"'{role}' is named twice, {roles[role]} and {joint}; say which it is.")
-        roles[role] = joint
-    if roles:
-        from gmr.body.naming import ROLES
-
-        if unknown := [role for role in roles if role not in ROLES]:
-            raise click.BadParameter(f"no role is called '{unknown[0]}'; the roles are {', '.join(ROLES)}.")
-    return roles
-
-
 @click.command(short_help="What a folder of locomotion clips can do, as a report.", epilog=EXAMPLES)
 @click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
 @click.option(
@@ -94,7 +54,6 @@ def _roles(context: click.Context, option: click.Parameter, pairs: tuple[str, ..
     type=click.Path(file_okay=False, path_type=Path),
     help="Write all numbers into this folder, as CSV and as Parquet (as JSON where pyarrow is missing).",
 )
-@click.option("--mirror", is_flag=True, help="Add the mirror image of every clip.")
 @click.option(
     "--tracking",
     type=click.Choice(["time", "velocity"]),
@@ -102,28 +61,10 @@ def _roles(context: click.Context, option: click.Parameter, pairs: tuple[str, ..
     show_default=True,
     help="Steer to where the path has the character at each time, or only ask for speed and turn rate.",
 )
-@click.option("--speeds", metavar=VALUES, callback=_values, help="Metres per second.  [default: 1:3:0.25]")
-@click.option(
-    "--turn-rates",
-    metavar=VALUES,
-    callback=_values,
-    help="Degrees per second, positive to the left.  [default: -100:100:25]",
-)
 @click.option(
     "--preset", type=click.Choice(["mig2022"]), help="Pace the trials as the authors of the paper did."
 )
-@click.option(
-    "--name",
-    "names",
-    metavar="ROLE=JOINT",
-    multiple=True,
-    callback=_roles,
-    help="Say which joint is the hips, left_up_leg, right_up_leg, left_foot or right_foot. Repeatable.",
-)
-@click.option(
-    "--unit", type=Unit(), help="Unit of length of the files: m, cm, mm, in, ft, cmu, or metres per unit."
-)
-@click.option("--threads", type=click.IntRange(min=1), help="How many to use.  [default: all cores]")
+@evaluation_options
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the verdict.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
 def evaluate(
@@ -157,7 +98,7 @@ def evaluate(
     except ValueError as error:
         raise click.UsageError(f"{error}.") from error
     phases = Phases(quiet)
-    with phases, _trouble_with_files(phases):
+    with phases, trouble_with_files(phases):
         _check_places(None if no_report else out, tables, phases)
         found = gmr.evaluate(
             folder,
@@ -173,19 +114,9 @@ def evaluate(
         )
         written = _write(found, None if no_report else out, tables, phases)
     click.echo(_summary(found, written) if as_json else _verdict(found, written))
-    for sentence in _left_out(found.failed):
+    for sentence in left_out(found.failed):
         say(sentence)
     return 1 if found.failed else 0
-
-
-def _left_out(failed: Mapping[str, str]) -> Iterator[str]:
-    """A sentence for each reason for which files were left out."""
-    files: dict[str, list[str]] = {}
-    for file, why in failed.items():
-        files.setdefault(why, []).append(file)
-    for why, alike in files.items():
-        named = len(alike) == 1 and alike[0] in why
-        yield f"left out {why}" if named else f"left out {listed(alike, 5)}: {why}"
 
 
 def _check_places(out: Path | None, tables: Path | None, phases: Phases) -> None:
@@ -194,10 +125,10 @@ def _check_places(out: Path | None, tables: Path | None, phases: Phases) -> None
 
     phases.current = "looking where to write"
     if tables is not None:
-        with _naming(tables):
+        with at_place(tables):
             check_place(tables / "trials.csv")
     if out is not None:
-        with _naming(out):
+        with at_place(out):
             check_place(out)
 
 
@@ -207,12 +138,12 @@ def _write(found: Evaluation, out: Path | None, tables: Path | None, phases: Pha
     if tables is not None:
         phases.tell("writing tables", 0, 1)
         columnar = "parquet" if _has_pyarrow() else "json"
-        with _naming(tables):
+        with at_place(tables):
             written["tables"] = [str(path) for path in found.write_tables(tables, ("csv", columnar))]
         phases.tell("writing tables", 1, 1)
     if out is not None:
         phases.tell("writing the report", 0, 1)
-        with _naming(out):
+        with at_place(out):
             out.parent.mkdir(parents=True, exist_ok=True)
             found.report(out)
         written["report"] = str(out)
@@ -270,25 +201,3 @@ def _finite(row: Mapping[str, Any]) -> dict[str, Any]:
         name: None if isinstance(value, float) and not math.isfinite(value) else value
         for name, value in row.items()
     }
-
-
-@contextmanager
-def _naming(place: Path) -> Iterator[None]:
-    """An error of a disk names no file, or one that was only there while writing: it is given ``place``."""
-    try:
-        yield
-    except OSError as error:
-        error.filename = str(place)
-        raise
-
-
-@contextmanager
-def _trouble_with_files(phases: Phases) -> Iterator[None]:
-    """A file that cannot be written, on a full disk or elsewhere, is one sentence."""
-    try:
-        yield
-    except OSError as error:
-        place = f"{error.filename}: " if error.filename else ""
-        raise GmrError(
-            f"{place}{error.strerror or error} (while {phases.current}); no file was left half-written"
-        ) from error

@@ -34,12 +34,14 @@ class Completion:
     """A dataset before and after its holes were filled.
 
     Attributes:
+        dataset: its name.
         before, after: the two evaluations, of the same trials.
         added: the clips that were made, by name.
         asked: what each of them was made for.
         not_made: holes that nothing could be made for.
     """
 
+    dataset: str
     before: Evaluation
     after: Evaluation
     added: Mapping[str, Motion]
@@ -129,7 +131,7 @@ def complete(
         raise DatasetError(
             f"{left_out[0]} cannot be evaluated beside the dataset's own clips: {after.failed[left_out[0]]}"
         )
-    return Completion(before, after, added, asked, tuple(not_made))
+    return Completion(dataset, before, after, added, asked, tuple(not_made))
 
 
 def _with_straight(asks: Iterable[Ask]) -> tuple[Ask, ...]:

@@ -35,9 +35,9 @@ def page(of: Completion, strips: Mapping[str, str]) -> str:
     """
     drawn = list(figures(of))
     return Page(
-        title=f"{of.before.dataset}: completed",
+        title=f"{of.dataset}: completed",
         eyebrow="Locomotion dataset, its holes filled",
-        heading=of.before.dataset,
+        heading=of.dataset,
         facts=_facts(of),
         sections="\n".join(
             filter(

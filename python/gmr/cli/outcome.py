@@ -1,0 +1,45 @@
+"""How commands that evaluate tell what was left out, and what could not be written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+from gmr.cli.progress import Phases
+from gmr.errors import GmrError
+from gmr.listing import listed
+
+__all__ = ["at_place", "left_out", "trouble_with_files"]
+
+
+def left_out(failed: Mapping[str, str]) -> Iterator[str]:
+    """A sentence for each reason for which files were left out."""
+    files: dict[str, list[str]] = {}
+    for file, why in failed.items():
+        files.setdefault(why, []).append(file)
+    for why, alike in files.items():
+        named = len(alike) == 1 and alike[0] in why
+        yield f"left out {why}" if named else f"left out {listed(alike, 5)}: {why}"
+
+
+@contextmanager
+def at_place(place: Path) -> Iterator[None]:
+    """An error of a disk names no file, or one that was only there while writing: it is given ``place``."""
+    try:
+        yield
+    except OSError as error:
+        error.filename = str(place)
+        raise
+
+
+@contextmanager
+def trouble_with_files(phases: Phases) -> Iterator[None]:
+    """A file that cannot be written, on a full disk or elsewhere, is one sentence."""
+    try:
+        yield
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename else ""
+        raise GmrError(
+            f"{place}{error.strerror or error} (while {phases.current}); no file was left half-written"
+        ) from error
