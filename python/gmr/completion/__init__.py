@@ -4,5 +4,7 @@ from __future__ import annotations
 
 from gmr.completion.complete import Completion, Filler, complete
 from gmr.completion.holes import Ask, holes
+from gmr.completion.synthesised import synthesised
+from gmr.completion.writing import write_completion
 
-__all__ = ["Ask", "Completion", "Filler", "complete", "holes"]
+__all__ = ["Ask", "Completion", "Filler", "complete", "holes", "synthesised", "write_completion"]
