@@ -121,7 +121,7 @@ def _read(folder: Path, threads: int | None, phases: Phases) -> Takes:
         progress=lambda done, of: phases.tell("reading", done, of),
     )
     if not takes:
-        raise DatasetError(f"{folder} holds no motion that can be read; give the folder that the clips are in")
+        raise DatasetError(f"{folder} holds no motion that can be read; give the folder with the clips")
     return takes
 
 

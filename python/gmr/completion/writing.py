@@ -32,8 +32,8 @@ def write_completion(
         progress: called with what is being written, how much of it is done, and of how much.
 
     Returns:
-        The page, ``index.html``; beside it ``before.html`` and ``after.html``, the full reports, ``trials.csv``
-        and ``clips.csv``, and ``clips/``, the clips that were made as BVH.
+        The page, ``index.html``; beside it the full reports ``before.html`` and ``after.html``,
+        ``trials.csv`` and ``clips.csv``, and ``clips/``, the clips that were made, as BVH.
 
     Raises:
         OSError: a file cannot be written.

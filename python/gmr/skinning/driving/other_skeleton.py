@@ -19,8 +19,8 @@ from gmr.forest import home
 from gmr.motion import Motion
 from gmr.quaternions import IDENTITY, about, conjugate, from_matrices, multiply, rotated
 from gmr.skinning.character import Character
-from gmr.skinning.driving.body_parts import Body
 from gmr.skinning.driving.body_of_motion import body_of_motion
+from gmr.skinning.driving.body_parts import Body
 from gmr.skinning.driving.drive_character import drive
 from gmr.skinning.driving.driven import Driven, DrivingReport
 from gmr.skinning.driving.following import Names
