@@ -17,6 +17,8 @@ __all__ = ["write_completion"]
 _STRIPS: Final = 3
 """Made clips of which the page shows a film strip: those that are played longest."""
 
+_FIGURES: Final = 10
+
 
 def write_completion(
     of: Completion,
@@ -60,9 +62,9 @@ def write_completion(
 
 def _strips(of: Completion) -> dict[str, str]:
     """Film strips of the made clips that are played longest."""
-    from gmr.actionlets.film_strip import strip_svg
+    from gmr.actionlets import film_strip
 
     played = of.clips["played_seconds"]
     longest = sorted(range(len(played)), key=lambda row: -played[row])[:_STRIPS]
     names = list(of.added)
-    return {names[row]: strip_svg(of.added[names[row]]) for row in longest}
+    return {names[row]: film_strip(of.added[names[row]], count=_FIGURES) for row in longest}
