@@ -13,7 +13,7 @@ import click
 
 __all__ = ["gmr"]
 
-COMMANDS: Final = ("evaluate", "info", "convert", "roots", "view", "skin", "synthesize", "bench", "demo")
+COMMANDS: Final = ("evaluate", "complete", "info", "convert", "roots", "view", "skin", "synthesize", "bench", "demo")
 
 
 class Commands(click.Group):

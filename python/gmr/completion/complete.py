@@ -26,6 +26,9 @@ __all__ = ["Completion", "Filler", "complete"]
 Filler: TypeAlias = Callable[[Ask, Motion], Motion | None]
 """Makes a clip of a movement on the skeleton of another motion; None where it cannot."""
 
+_SUFFIX = ".bvh"
+"""Made clips are named as the files that they may be written to."""
+
 Progress: TypeAlias = Callable[[str, int, int], object]
 
 
@@ -123,7 +126,7 @@ def complete(
         if made is None:
             not_made.append(ask)
             continue
-        name = _unused(f"made_{ask.name}", motions)
+        name = _unused(f"made_{ask.name}", motions) + _SUFFIX
         added[name], asked[name] = made, ask
     tell("making clips", len(wanted), len(wanted))
     after = evaluate({**motions, **added}, progress=phase("after"), **settings) if added else before
@@ -141,6 +144,6 @@ def _with_straight(asks: Iterable[Ask]) -> tuple[Ask, ...]:
 
 
 def _unused(name: str, motions: Mapping[str, Motion]) -> str:
-    while name in motions:
+    while name + _SUFFIX in motions:
         name += "_"
     return name
