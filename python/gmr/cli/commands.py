@@ -13,7 +13,10 @@ import click
 
 __all__ = ["gmr"]
 
-COMMANDS: Final = ("evaluate", "complete", "info", "convert", "roots", "view", "skin", "synthesize", "bench", "demo")
+COMMANDS: Final = (
+    *("evaluate", "complete", "info", "convert", "roots", "view", "skin", "synthesize"),
+    *("bench", "demo"),
+)
 
 
 class Commands(click.Group):

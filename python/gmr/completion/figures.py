@@ -25,7 +25,7 @@ def figures(of: Completion) -> Iterator[Figure]:
     """Every figure, in the order of the page."""
     for when, evaluation in (("before", of.before), ("after", of.after)):
         scenario, tracking = trial_sets(evaluation)[0]
-        drawn = holds_map(evaluation, scenario, tracking)
+        drawn = holds_map(evaluation, scenario, tracking, columns=2)
         yield replace(drawn, name=f"holds_{when}", title=f"{drawn.title}, {when}")
     yield _change_map(of)
 

@@ -26,7 +26,8 @@ def headline(of: Completion) -> str:
     before, after = _held(of, "before"), _held(of, "after")
     total = len(before)
     if before.all():
-        return f"Nothing is missing: {of.dataset} does {'the one trial' if total == 1 else f'all {total} trials'} that it is asked for."
+        all_of_them = "the one trial" if total == 1 else f"all {total} trials"
+        return f"Nothing is missing: {of.dataset} does {all_of_them} that it is asked for."
     filled, lost = int((after & ~before).sum()), int((before & ~after).sum())
     told = f"{count(filled, 'hole is', 'holes are')} filled" + (
         f", {count(lost, 'trial is', 'trials are')} lost" if lost else ", none is lost"

@@ -21,8 +21,8 @@ _COLOURS: Final = ("holds", "strays", "wrong-speed", "wrong-turn")
 _MARKS: Final = ("✓", "path", "speed", "turn")
 
 
-def holds_map(evaluation: Evaluation, scenario: str, tracking: str) -> Figure:
-    """Every trial as held, or as failed by the limit that it exceeds most."""
+def holds_map(evaluation: Evaluation, scenario: str, tracking: str, *, columns: int = 4) -> Figure:
+    """Every trial as held, or as failed by the limit that it exceeds most; the legend has ``columns``."""
     trials = trials_of(evaluation, scenario, tracking)
     grid = Grid.of(trials, evaluation.measured.coverage, Limits())
     row = np.searchsorted(grid.speeds, trials["speed"])
@@ -39,7 +39,7 @@ def holds_map(evaluation: Evaluation, scenario: str, tracking: str) -> Figure:
         name="trial_map_holds" + ("" if tracking == "time" else f"_{tracking}"),
         title="Where it does what it is asked",
         sentence=_sentence(outcome, grid.limits, timed=tracking == "time"),
-        chart=_chart(len(grid.speeds)),
+        chart=_chart(len(grid.speeds), columns),
         data={"trials": drawn},
     )
 
@@ -72,7 +72,7 @@ def _sentence(outcome: NDArray[np.int64], limits: Limits, *, timed: bool) -> str
     )
 
 
-def _chart(rows: int) -> dict[str, Any]:
+def _chart(rows: int, columns: int) -> dict[str, Any]:
     def colour(prefix: str, legend: dict[str, Any] | None) -> dict[str, Any]:
         return {
             "field": "outcome",
@@ -84,7 +84,7 @@ def _chart(rows: int) -> dict[str, Any]:
             "legend": legend,
         }
 
-    legend = {"title": None, "columns": {"expr": "windowSize()[0] < 600 ? 2 : 4"}}
+    legend = {"title": None, "columns": {"expr": f"windowSize()[0] < 600 ? 2 : {columns}"}}
     marks = {
         "mark": {
             "type": "text",
