@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["bell", "bell_slope", "share"]
+__all__ = ["bell", "bell_slope", "share", "share_by_skew"]
 
 Floats = NDArray[np.float64]
 
@@ -45,6 +45,15 @@ def share(u: Floats, skew: Floats | float) -> Floats:
     rising, falling = _halves(u, skew)
     up = skew * (rising - np.sin(np.pi * rising) / np.pi)
     down = skew + (1 - skew) * (falling + np.sin(np.pi * falling) / np.pi)
+    found: Floats = np.where(u <= skew, up, down)
+    return found
+
+
+def share_by_skew(u: Floats, skew: Floats | float) -> Floats:
+    """ds/dT, the change of the share with the skew."""
+    rising, falling = _halves(u, skew)
+    up = rising * np.cos(np.pi * rising) - np.sin(np.pi * rising) / np.pi
+    down = (falling - 1) * np.cos(np.pi * falling) - np.sin(np.pi * falling) / np.pi
     found: Floats = np.where(u <= skew, up, down)
     return found
 
