@@ -18,18 +18,20 @@ from numpy.typing import NDArray
 from gmr.actionlets.bell import share
 from gmr.actionlets.decomposition.outline import Outline
 
-__all__ = ["Candidates", "cheapest"]
+__all__ = ["COARSE", "FINE", "Candidates", "cheapest"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_SKEWS: Final = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9])
+COARSE: Final = np.linspace(0.1, 0.9, 9)
+FINE: Final = np.linspace(0.06, 0.94, 45)
+"""Skews among which each piece is given one."""
+
 _POINTS: Final = 24
 """Of a piece at which its error is taken, whatever its duration."""
 
 _U: Final = (np.arange(_POINTS) + 0.5) / _POINTS
-_SHARES: Final = share(_U[None], _SKEWS[:, None])
-_GROWTH: Final = 1.1
+_GROWTH: Final = 1.15
 """From one length of a piece to the next, as counted in candidates, once they are too many to try all."""
 
 _BLOCK: Final = 512
@@ -49,7 +51,15 @@ class Candidates:
     angles: Floats
 
 
-def cheapest(times: Floats, curve: Floats, candidates: Candidates, price: float, longest: float) -> Outline:
+def cheapest(
+    times: Floats,
+    curve: Floats,
+    candidates: Candidates,
+    price: float,
+    shortest: float,
+    longest: float,
+    skews: Floats = COARSE,
+) -> Outline:
     """The track of least cost.
 
     Args:
@@ -57,8 +67,11 @@ def cheapest(times: Floats, curve: Floats, candidates: Candidates, price: float,
         curve: (N,) radians.
         candidates: where it may rest.
         price: of a piece, in radians squared times seconds.
+        shortest: seconds that a piece must last, where another way is left.
         longest: seconds that a piece may last.
+        skews: those from which a piece may have one.
     """
+    shares = share(_U[None], skews[:, None])
     count, levels = candidates.angles.shape
     steps = _steps(candidates.times, longest)
     best = np.full((count, levels), np.inf)
@@ -66,31 +79,36 @@ def cheapest(times: Floats, curve: Floats, candidates: Candidates, price: float,
     before = np.zeros((count, levels, 3), np.int32)  # candidate, level and skew of the piece that leads here
     for first in range(1, count, _BLOCK):
         ends = np.arange(first, min(first + _BLOCK, count))
-        costs, skews = _pieces(times, curve, candidates, ends, steps)
+        costs, tilts = _pieces(times, curve, candidates, ends, steps, shares)
         for row, end in enumerate(ends.tolist()):
             reach = steps[steps <= end]
-            total = best[end - reach][:, :, None] + costs[row, : len(reach)]
+            weighed = costs[row, : len(reach)]
+            hasty = candidates.times[end] - candidates.times[end - reach] < shortest
+            if not hasty.all() or end < count - 1:
+                weighed = np.where(hasty[:, None, None], np.inf, weighed)
+            total = best[end - reach][:, :, None] + weighed
             flat = total.reshape(-1, levels)
             chosen = flat.argmin(axis=0)
             best[end] = flat[chosen, np.arange(levels)] + price
             place, level = np.divmod(chosen, levels)
-            before[end] = np.stack([end - reach[place], level, skews[row, place]], axis=-1)
-    return _traced(candidates, before, int(best[-1].argmin()))
+            before[end] = np.stack([end - reach[place], level, tilts[row, place]], axis=-1)
+    return _traced(candidates, skews, before, int(best[-1].argmin()))
 
 
-def _traced(candidates: Candidates, before: NDArray[np.int32], level: int) -> Outline:
+def _traced(candidates: Candidates, skews: Floats, before: NDArray[np.int32], level: int) -> Outline:
+    """The way back from the end, at which the best level is known."""
     at = len(candidates.times) - 1
-    knots, skews = [(at, level)], []
+    knots, chosen_skews = [(at, level)], []
     while at:
         at, level, skew = before[at, level].tolist()
         knots.append((at, level))
-        skews.append(skew)
+        chosen_skews.append(skew)
     places, chosen = np.array(knots[::-1]).T
-    return Outline(candidates.times[places], candidates.angles[places, chosen], _SKEWS[skews[::-1]])
+    return Outline(candidates.times[places], candidates.angles[places, chosen], skews[chosen_skews[::-1]])
 
 
 def _pieces(
-    times: Floats, curve: Floats, candidates: Candidates, ends: Ints, steps: Ints
+    times: Floats, curve: Floats, candidates: Candidates, ends: Ints, steps: Ints, shares: Floats
 ) -> tuple[Floats, Ints]:
     """(E, L, K, K) squared error of the pieces that end at ``ends``, begun each of ``steps`` candidates
     before, by levels at both; and (E, L) numbers of their skews.
@@ -103,10 +121,10 @@ def _pieces(
     x = np.interp(t0[..., None] + (t1 - t0)[..., None] * _U, times, curve)
     mean = x.mean(axis=-1)
     x = x - mean[..., None]
-    spread = _SHARES - _SHARES.mean(axis=1, keepdims=True)
+    spread = shares - shares.mean(axis=1, keepdims=True)
     explained = (x @ spread.T) ** 2 / (spread**2).sum(axis=1)
     skew = explained.argmax(axis=-1)
-    s = _SHARES[skew]
+    s = shares[skew]
     one = candidates.angles[starts] - mean[..., None]
     way = candidates.angles[ends][:, None, None, :] - mean[..., None, None] - one[..., None]
     xx, xs = (x * x).sum(axis=-1), (x * s).sum(axis=-1)

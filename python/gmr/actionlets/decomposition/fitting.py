@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gmr.actionlets.actionlet import SYMMETRIC, checked_number
-from gmr.actionlets.decomposition.cutting import Candidates, cheapest
+from gmr.actionlets.decomposition.cutting import FINE, Candidates, cheapest
 from gmr.actionlets.decomposition.outline import Outline
 from gmr.actionlets.decomposition.refining import refined
 from gmr.actionlets.track import Track
@@ -31,7 +31,7 @@ TOLERANCE_DEG: Final = 1.0
 _WORTH: Final = 0.5
 """Seconds over which a piece must take an error of the tolerance away."""
 
-_LATTICE: Final = 1 / 40
+_LATTICE: Final = 1 / 30
 """Seconds between the instants of the first lattice."""
 
 _LEVELS: Final = np.array([-2.5, -1.0, 0.0, 1.0, 2.5])
@@ -43,8 +43,11 @@ _REACH: Final = 0.03
 _LONGEST: Final = 12.0
 """Seconds of the longest piece that is looked for; longer silences are put together afterwards."""
 
-_SHORTEST: Final = 0.04
+_SHORTEST: Final = 0.05
 """Seconds: no human movement is over sooner."""
+
+_HASTY: Final = 0.15
+"""Seconds: a piece that is over sooner may be an artefact, and is weighed against an instant in its middle."""
 
 _STILL: Final = 0.25
 """Share of the tolerance: what travels less is a silence."""
@@ -95,33 +98,73 @@ def decompose_curves(times: ArrayLike, angles: ArrayLike, tolerance_deg: float =
 def _fitted(t: Floats, curves: Sequence[Floats], tolerance: float) -> list[Outline]:
     price = _WORTH * tolerance**2
     shortest = min(_SHORTEST, float(t[-1] - t[0]) / 4)
-    outlines = [_on_lattice(t, curve, tolerance, price) for curve in curves]
-    outlines = refined(t, curves, outlines, shortest)
-    outlines = [
-        _weighed_again(t, curve, outline, tolerance, price)
-        for curve, outline in zip(curves, outlines, strict=True)
-    ]
-    outlines = refined(t, curves, outlines, shortest)
-    outlines = [_with_silences(outline, _STILL * tolerance) for outline in outlines]
-    return refined(t, curves, outlines, shortest)
+    still = _STILL * tolerance
+    found = [_on_lattice(t, curve, tolerance, price, shortest) for curve in curves]
+    found = [_with_silences(outline, still) for outline in refined(t, curves, found, shortest)]
+    found = refined(t, curves, found, shortest)
+    costs = [_cost(t, curve, outline, price) for curve, outline in zip(curves, found, strict=True)]
+
+    def weighed_again(n: int) -> Outline:
+        return _weighed_again(t, curves[n], found[n], tolerance, price, shortest)
+
+    for propose in (weighed_again, lambda n: _calmer(found[n], 99), weighed_again, lambda n: _calmer(found[n], 1)):
+        proposed = {n: propose(n) for n in range(len(curves))}
+        changed = [n for n, outline in proposed.items() if len(outline.skews) != len(found[n].skews)]
+        these = [curves[n] for n in changed]
+        for _ in range(2):  # what hardly travels is known once it is refined, and makes room for its neighbours
+            trial = refined(t, these, [proposed[n] for n in changed], shortest)
+            proposed |= {n: _with_silences(outline, still) for n, outline in zip(changed, trial, strict=True)}
+        for n in changed:
+            cost = _cost(t, curves[n], proposed[n], price)
+            if cost < costs[n]:
+                found[n], costs[n] = proposed[n], cost
+    return found
 
 
-def _on_lattice(t: Floats, curve: Floats, tolerance: float, price: float) -> Outline:
+def _cost(t: Floats, curve: Floats, outline: Outline, price: float) -> float:
+    squares = (outline.at(t - t[0] + outline.times[0]) - curve) ** 2
+    return float(np.trapezoid(squares, t)) + price * len(outline.skews)
+
+
+def _on_lattice(t: Floats, curve: Floats, tolerance: float, price: float, shortest: float) -> Outline:
     count = max(1, round((t[-1] - t[0]) / max(_LATTICE, float(np.diff(t).mean()))))
     instants = np.linspace(t[0], t[-1], count + 1)
     reach = max(_REACH * float(np.ptp(curve)), 0.4 * tolerance)
     levels = np.interp(instants, t, curve)[:, None] + reach * _LEVELS
-    return cheapest(t, curve, Candidates(instants, levels), price, _LONGEST)
+    return cheapest(t, curve, Candidates(instants, levels), price, shortest, _LONGEST)
 
 
-def _weighed_again(t: Floats, curve: Floats, outline: Outline, tolerance: float, price: float) -> Outline:
+def _weighed_again(
+    t: Floats, curve: Floats, outline: Outline, tolerance: float, price: float, shortest: float
+) -> Outline:
     """The cheapest track over the instants of this one, and some near them."""
     inner = outline.times[1:-1]
     beside = np.minimum(0.25 * np.diff(outline.times)[:-1], _LATTICE)
     after = np.minimum(0.25 * np.diff(outline.times)[1:], _LATTICE)
-    instants = np.unique(np.concatenate([outline.times, inner - beside, inner + after]))
+    middles = (outline.times[:-1] + outline.times[1:])[np.diff(outline.times) < _HASTY] / 2
+    instants = np.unique(np.concatenate([outline.times, inner - beside, inner + after, middles]))
     levels = outline.at(instants)[:, None] + 0.3 * tolerance * _LEVELS
-    return cheapest(t, curve, Candidates(instants, levels), price, _LONGEST)
+    return cheapest(t, curve, Candidates(instants, levels), price, shortest, _LONGEST, FINE)
+
+
+def _calmer(outline: Outline, most: int) -> Outline:
+    """Without its hastiest pieces, at most so many: the instants at their ends become one in the middle."""
+    times, angles = outline.times.copy(), outline.angles.copy()
+    lengths = np.diff(times)
+    kept = np.ones(len(times), bool)
+    for place in np.argsort(lengths)[:most].tolist():
+        if lengths[place] >= _HASTY or len(lengths) < 2:
+            break
+        if place in (0, len(lengths) - 1):
+            kept[1 if place == 0 else place] = False
+        elif kept[place] and kept[place + 1]:
+            kept[place + 1] = False
+            times[place] = (times[place] + times[place + 1]) / 2
+            angles[place] = (angles[place] + angles[place + 1]) / 2
+    firsts = np.flatnonzero(kept)[:-1]
+    # A piece keeps its own skew: what begins at a middle is what began after the hasty piece.
+    ahead = np.where(kept[firsts + 1], firsts, np.minimum(firsts + 1, len(lengths) - 1))
+    return Outline(times[kept], angles[kept], outline.skews[ahead])
 
 
 def _with_silences(outline: Outline, still: float) -> Outline:

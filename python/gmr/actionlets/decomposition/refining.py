@@ -27,7 +27,7 @@ Ints = NDArray[np.int64]
 _STEEPEST: Final = float(np.log(0.96 / 0.04))
 """Of log(T / (1 - T)): skews stay within 0.04 and 0.96, beyond which a bell has a corner."""
 
-_SETTLED: Final = 1e-4
+_SETTLED: Final = 3e-4
 """Share of the squared error that a step must take away for another to be worth it."""
 
 _TIED: Final = 1e5
@@ -45,13 +45,15 @@ def refined(
         outlines: where to start from, one for each curve; a piece that has no travel keeps having none.
         shortest: seconds below which no piece is shortened.
     """
+    if not curves:
+        return []
     samples = _Samples.of(times, curves)
     state = _State.of(outlines, samples.spacing)
     residuals = state.residuals(samples)
     error = samples.by_curve(residuals**2)
     damping = np.full(len(curves), 1e-2)
     moving = np.ones(len(curves), bool)
-    for _ in range(steps):
+    for done in range(1, steps + 1):
         step = _step(state, samples, residuals, damping)
         trial = state.moved(step, moving, shortest)
         trial_residuals = trial.residuals(samples)
@@ -63,9 +65,20 @@ def refined(
         damping = np.where(better, np.maximum(damping / 6, 1e-9), damping * 5)
         moving &= ~((better & (gained <= _SETTLED * error)) | (damping > 1e6))
         error = np.where(better, trial_error, error)
-        if not moving.any():
+        if 2 * moving.sum() <= len(curves):
             break
-    return state.outlines(samples.spacing)
+    else:
+        return state.outlines(samples.spacing)
+    # Those that are settled need not be looked at any more.
+    found = state.outlines(samples.spacing)
+    going_on = np.flatnonzero(moving).tolist()
+    if going_on:
+        of_these = refined(
+            times, [curves[n] for n in going_on], [found[n] for n in going_on], shortest, steps - done
+        )
+        for n, outline in zip(going_on, of_these, strict=True):
+            found[n] = outline
+    return found
 
 
 @dataclass(frozen=True, slots=True)
