@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from gmr.actionlets.actions.performance import Performance
     from gmr.actionlets.actions.taking import Take
     from gmr.actionlets.body import Body
+    from gmr.actionlets.decomposition import Decomposed, decompose, decompose_curve, decompose_curves
     from gmr.actionlets.dofs import Dof
     from gmr.actionlets.measured import Measured
     from gmr.actionlets.mutation import mutate, substituted, variation
@@ -30,6 +31,7 @@ __all__ = [
     "Action",
     "Actionlet",
     "Body",
+    "Decomposed",
     "Dof",
     "Library",
     "Measured",
@@ -39,6 +41,9 @@ __all__ = [
     "Take",
     "Track",
     "concatenate",
+    "decompose",
+    "decompose_curve",
+    "decompose_curves",
     "film_strip",
     "insert",
     "is_periodic",
@@ -58,6 +63,7 @@ _HOMES = {
     "Action": "gmr.actionlets.actions.action",
     "Actionlet": "gmr.actionlets.actionlet",
     "Body": "gmr.actionlets.body",
+    "Decomposed": "gmr.actionlets.decomposition",
     "Dof": "gmr.actionlets.dofs",
     "Library": "gmr.actionlets.actions.library",
     "Measured": "gmr.actionlets.measured",
@@ -67,6 +73,9 @@ _HOMES = {
     "Take": "gmr.actionlets.actions.taking",
     "Track": "gmr.actionlets.track",
     "concatenate": "gmr.actionlets.operations",
+    "decompose": "gmr.actionlets.decomposition",
+    "decompose_curve": "gmr.actionlets.decomposition",
+    "decompose_curves": "gmr.actionlets.decomposition",
     "film_strip": "gmr.actionlets.pictures",
     "insert": "gmr.actionlets.operations",
     "is_periodic": "gmr.actionlets.operations",

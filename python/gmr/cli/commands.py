@@ -14,9 +14,9 @@ import click
 __all__ = ["gmr"]
 
 COMMANDS: Final = (
-    *("evaluate", "complete", "info", "convert", "roots", "view", "skin", "synthesize"),
-    *("bench", "demo"),
-)
+    "evaluate", "complete", "info", "convert", "roots", "view", "skin", "synthesize", "decompose",
+    "bench", "demo",
+)  # fmt: skip
 
 
 class Commands(click.Group):
@@ -61,6 +61,7 @@ def gmr() -> None:
     gmr skin figure.glb walk.bvh walking.glb       a motion drives a character
     gmr synthesize walk --speed 1.4 --out walk.bvh     a motion that nobody recorded
     gmr view walk.bvh --open                       look at it in a browser
+    gmr decompose walk.bvh --out score.html        a motion as a score of single movements
     gmr evaluate takes/           what a set of locomotion clips can do, as a report
     gmr COMMAND --help            more examples
     """

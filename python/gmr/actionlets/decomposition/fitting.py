@@ -74,7 +74,9 @@ def decompose_curve(times: ArrayLike, angles: ArrayLike, tolerance_deg: float = 
     return decompose_curves(times, np.asarray(angles, np.float64)[:, None], tolerance_deg)[0]
 
 
-def decompose_curves(times: ArrayLike, angles: ArrayLike, tolerance_deg: float = TOLERANCE_DEG) -> list[Track]:
+def decompose_curves(
+    times: ArrayLike, angles: ArrayLike, tolerance_deg: float = TOLERANCE_DEG
+) -> list[Track]:
     """A track for each of several curves over the same times; otherwise as :func:`decompose_curve`.
 
     Args:
@@ -107,11 +109,18 @@ def _fitted(t: Floats, curves: Sequence[Floats], tolerance: float) -> list[Outli
     def weighed_again(n: int) -> Outline:
         return _weighed_again(t, curves[n], found[n], tolerance, price, shortest)
 
-    for propose in (weighed_again, lambda n: _calmer(found[n], 99), weighed_again, lambda n: _calmer(found[n], 1)):
+    for propose in (
+        weighed_again,
+        lambda n: _calmer(found[n], 99),
+        weighed_again,
+        lambda n: _calmer(found[n], 1),
+    ):
         proposed = {n: propose(n) for n in range(len(curves))}
         changed = [n for n, outline in proposed.items() if len(outline.skews) != len(found[n].skews)]
         these = [curves[n] for n in changed]
-        for _ in range(2):  # what hardly travels is known once it is refined, and makes room for its neighbours
+        for _ in range(
+            2
+        ):  # what hardly travels is known once it is refined, and makes room for its neighbours
             trial = refined(t, these, [proposed[n] for n in changed], shortest)
             proposed |= {n: _with_silences(outline, still) for n, outline in zip(changed, trial, strict=True)}
         for n in changed:
@@ -190,7 +199,9 @@ def _checked(times: ArrayLike, angles: ArrayLike) -> tuple[Floats, Floats]:
         raise ActionletError(f"a curve of {len(t)} samples has no duration; give two or more")
     if not (np.isfinite(t).all() and (np.diff(t) > 0).all()):
         place = int(np.flatnonzero(~(np.diff(t) > 0))[0]) + 1 if len(t) > 1 else 0
-        raise ActionletError(f"time {place} of a curve is {t[place]:g} s after {t[place - 1]:g} s; times must rise")
+        raise ActionletError(
+            f"time {place} of a curve is {t[place]:g} s after {t[place - 1]:g} s; times must rise"
+        )
     wrong = np.argwhere(~np.isfinite(values))
     if len(wrong):
         frame, column = wrong[0].tolist()

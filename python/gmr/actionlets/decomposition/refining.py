@@ -194,9 +194,7 @@ class _State:
         found = []
         for number in range(int(self.curve[-1]) + 1):
             mine = np.flatnonzero(self.curve == number)
-            found.append(
-                Outline(self.times[mine] - number * spacing, angles[mine], self.skews[mine[:-1]])
-            )
+            found.append(Outline(self.times[mine] - number * spacing, angles[mine], self.skews[mine[:-1]]))
         return found
 
 
