@@ -79,6 +79,7 @@ def test_console_examples_run(page: Path, reader_folder: Path) -> None:
 
 
 EXAMPLES = {
+    "actionlet_figures.py": ["figures", "walk.bvh"],
     "fastest_foot.py": ["takes"],
     "compare_with_mirrored.py": ["takes"],
     "drive_a_character.py": ["takes", "poses.npz"],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from gmr.actionlets.decomposition import Decomposed
 
 __all__ = ["decompose"]
+
+_HEADS: Final = (("most", 6), ("from", 7), ("to", 7), ("pieces", 6), ("still", 5), ("ratio", 6))
 
 
 @click.command(short_help="Take a motion apart into actionlets; draw the score.")
@@ -98,7 +100,7 @@ def _printed(found: Decomposed, file: str) -> str:
         f"{file}: {found.score.duration:.2f} s, {len(table)} degrees of freedom, {found.score.piece_count}"
         f" pieces; RMS {found.median_rms_deg:.2f} degrees (median), {found.p90_rms_deg:.2f} (90 %);"
         f" {found.ratio:.1f} times smaller than its samples",
-        f"  {'':<{width}}  {'RMS':>6} {'most':>6} {'from':>7} {'to':>7} {'pieces':>6} {'still':>5} {'ratio':>6}",
+        " ".join([f"  {'':<{width}}  {'RMS':>6}", *(f"{head:>{wide}}" for head, wide in _HEADS)]),
     ]
     still = 0
     for row, moves in zip(table.rows(), found.moving.tolist(), strict=True):

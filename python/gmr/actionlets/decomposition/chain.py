@@ -26,7 +26,8 @@ def solved(diagonal: Floats, above: Floats, right: Floats) -> Floats:
     """
     count, size = right.shape
     if count == 1:
-        return np.linalg.solve(diagonal, right[..., None])[..., 0]
+        only: Floats = np.linalg.solve(diagonal, right[..., None])[..., 0].astype(np.float64)
+        return only
     odd = np.arange(1, count, 2)
     next_above = np.zeros((len(odd), size, size))
     inner = odd[odd < count - 1]

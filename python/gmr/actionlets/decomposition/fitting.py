@@ -47,7 +47,7 @@ _SHORTEST: Final = 0.05
 """Seconds: no human movement is over sooner."""
 
 _HASTY: Final = 0.15
-"""Seconds: a piece that is over sooner may be an artefact, and is weighed against an instant in its middle."""
+"""Seconds: a piece that is over sooner may be an artefact; it is weighed against an instant in its middle."""
 
 _STILL: Final = 0.25
 """Share of the tolerance: what travels less is a silence."""
@@ -193,7 +193,8 @@ def _checked(times: ArrayLike, angles: ArrayLike) -> tuple[Floats, Floats]:
     t, values = np.asarray(times, np.float64), np.asarray(angles, np.float64)
     if t.ndim != 1 or values.ndim != 2 or len(t) != len(values):
         raise ActionletError(
-            f"times have the shape {t.shape}, angles {values.shape}; give one angle of each curve for each time"
+            f"times have the shape {t.shape}, angles {values.shape}; give one angle of each curve for each"
+            " time"
         )
     if len(t) < 2:
         raise ActionletError(f"a curve of {len(t)} samples has no duration; give two or more")

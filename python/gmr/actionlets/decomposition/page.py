@@ -21,6 +21,12 @@ __all__ = ["page"]
 _DRAWN_FPS: Final = 60.0
 """Samples of the recording that are drawn, a second, at most."""
 
+_ORDER: Final = (
+    "neck", "waist", "left_shoulder", "left_elbow", "left_wrist", "right_shoulder", "right_elbow",
+    "right_wrist", "left_hip", "left_knee", "left_ankle", "right_hip", "right_knee", "right_ankle", "root",
+)  # fmt: skip
+"""Of the staves of a body: limb by limb, from the head down."""
+
 _SIDES: Final = {"left": 0, "right": 1, "": 2}
 
 
@@ -31,7 +37,9 @@ def page(found: Decomposed, name: str) -> str:
         found: what was decomposed.
         name: of the recording, for the heading.
     """
-    shown = np.flatnonzero(found.moving)
+    shown = sorted(
+        np.flatnonzero(found.moving).tolist(), key=lambda column: _place(found.recorded.dofs[column])
+    )
     figure = _errors(found)
     return Page(
         title=f"{name}: its score",
@@ -81,7 +89,8 @@ def _verdict(found: Decomposed, moving: int) -> str:
 def _score() -> str:
     legend = (
         '<p class="score-legend"><span class="key"><i class="bell"></i>an actionlet: its speed, up where the '
-        'angle rises; the taller, the farther it goes</span><span class="key"><i class="rest"></i>silence</span>'
+        "angle rises; the taller, the farther it goes</span>"
+        '<span class="key"><i class="rest"></i>silence</span>'
         '<span class="key"><i class="line composed"></i>the composed angle</span>'
         '<span class="key"><i class="line recorded"></i>the recorded one</span></p>'
     )
@@ -90,8 +99,8 @@ def _score() -> str:
         + element("h2", "The score")
         + element(
             "p",
-            "A stave for each degree of freedom, time from left to right, a bar line each second. Point at an "
-            "actionlet for its angles, duration and skew.",
+            "A stave for each degree of freedom, time from left to right, a bar line each second. Point at "
+            "an actionlet for its angles, duration and skew.",
             class_="lead",
         )
         + legend
@@ -115,13 +124,13 @@ def _fit(figure: Figure) -> str:
 def _method(found: Decomposed) -> str:
     words = [
         "An actionlet speeds up and slows down once: v(u) = (1 - cos(πu/T))/2 up to the share T of its "
-        "duration, (1 + cos(π(u - T)/(1 - T)))/2 from there (Zheng et al., Human Motion Simulation and Action "
-        "Corpus, Eq. 1). It goes from its first angle to its last, at rest at both.",
+        "duration, (1 + cos(π(u - T)/(1 - T)))/2 from there (Zheng et al., Human Motion Simulation and "
+        "Action Corpus, Eq. 1). It goes from its first angle to its last, at rest at both.",
         "Cuts, angles and skews are chosen together: the track of least squared error plus a price for each "
-        f"piece, {found.tolerance_deg:g}° for half a second, found by dynamic programming and refined by least "
-        "squares.",
-        "A bell is as tall as the square root of its way, so that small movements can be seen beside large ones. "
-        "Each stave has its own range of angles, as written on it.",
+        f"piece, {found.tolerance_deg:g}° for half a second, found by dynamic programming and refined by "
+        "least squares.",
+        "A bell is as tall as the square root of its way, so that small movements can be seen beside large "
+        "ones. Each stave has its own range of angles, as written on it.",
         "Size: three numbers for each piece and one for each degree of freedom, against one for each sample.",
     ]
     return element(
@@ -142,7 +151,8 @@ def _errors(found: Decomposed) -> Figure:
         sentence=worst,
         chart={
             "data": {"name": "errors"},
-            "height": {"step": ROW},
+            "width": "container",
+            "height": ROW * max(len(data), 1),
             "mark": {"type": "bar", "color": "var(--bar)", "tooltip": True, "cornerRadiusEnd": 2},
             "encoding": {
                 "y": {"field": "dof", "type": "nominal", "sort": None, "title": None, "axis": {**NAMES_AXIS}},
@@ -160,13 +170,19 @@ def _errors(found: Decomposed) -> Figure:
     )
 
 
-def _drawn(found: Decomposed, shown: np.ndarray[Any, np.dtype[np.intp]]) -> dict[str, Any]:
+def _place(dof: str) -> int:
+    """Of a degree of freedom among the staves; those of a file stay in its order."""
+    joint = dof.rpartition(".")[0]
+    return _ORDER.index(joint) if joint in _ORDER else -1
+
+
+def _drawn(found: Decomposed, shown: list[int]) -> dict[str, Any]:
     """What the script draws: a stave for each moving degree of freedom, of degrees and seconds."""
     recorded = found.recorded
     stride = max(1, round(recorded.fps / _DRAWN_FPS))
     frames = np.unique(np.append(np.arange(0, len(recorded.angles), stride), len(recorded.angles) - 1))
     staves = []
-    for column in shown.tolist():
+    for column in shown:
         dof = recorded.dofs[column]
         track = found.score[dof]
         joint, _, movement = dof.rpartition(".")

@@ -1,7 +1,7 @@
 """Cuts, angles and skews of many curves together, moved to where the squared error is least.
 
 Levenberg and Marquardt's method. A sample depends on its own piece alone, so the unknowns hang together like
-a chain: angle and time of an instant of rest and the skew of the piece that begins there, coupled to the next.
+a chain: angle and time of an instant of rest and skew of the piece that begins there, coupled to the next.
 All curves are laid one after the other on one axis of time; the gaps between them are pieces without samples.
 Source: Marquardt, "An algorithm for least-squares estimation of nonlinear parameters", J. SIAM 11, 1963.
 """
@@ -22,7 +22,7 @@ from gmr.actionlets.decomposition.outline import Outline
 __all__ = ["refined"]
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+Ints = NDArray[np.intp]
 
 _STEEPEST: Final = float(np.log(0.96 / 0.04))
 """Of log(T / (1 - T)): skews stay within 0.04 and 0.96, beyond which a bell has a corner."""
@@ -53,7 +53,7 @@ def refined(
     error = samples.by_curve(residuals**2)
     damping = np.full(len(curves), 1e-2)
     moving = np.ones(len(curves), bool)
-    for done in range(1, steps + 1):
+    for left in range(steps - 1, -1, -1):  # noqa: B007  (looked at after the loop)
         step = _step(state, samples, residuals, damping)
         trial = state.moved(step, moving, shortest)
         trial_residuals = trial.residuals(samples)
@@ -73,9 +73,7 @@ def refined(
     found = state.outlines(samples.spacing)
     going_on = np.flatnonzero(moving).tolist()
     if going_on:
-        of_these = refined(
-            times, [curves[n] for n in going_on], [found[n] for n in going_on], shortest, steps - done
-        )
+        of_these = refined(times, [curves[n] for n in going_on], [found[n] for n in going_on], shortest, left)
         for n, outline in zip(going_on, of_these, strict=True):
             found[n] = outline
     return found
@@ -106,7 +104,8 @@ class _Samples:
 
     def by_curve(self, values: Floats) -> Floats:
         """(C,) sums."""
-        return np.bincount(self.curve, values, self.count)
+        sums: Floats = np.bincount(self.curve, values, self.count).astype(np.float64)
+        return sums
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,7 +216,9 @@ def _step(state: _State, samples: _Samples, residuals: Floats, damping: Floats) 
         for j in range(i, 5):
             sums = np.bincount(piece, slopes[:, i] * slopes[:, j], count)
             products[:, i, j] = products[:, j, i] = sums
-    pulls = np.stack([np.bincount(piece, slopes[:, i] * residuals, count) for i in range(5)], axis=-1)
+    pulls: Floats = np.stack(
+        [np.bincount(piece, slopes[:, i] * residuals, count) for i in range(5)], axis=-1, dtype=np.float64
+    )
 
     diagonal = products[:, :3, :3].copy()
     diagonal[1:, :2, :2] += products[:-1, 3:, 3:]

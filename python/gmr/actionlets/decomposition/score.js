@@ -4,7 +4,7 @@
 const SCORE = (() => {
   const HOLDER = document.querySelector(".score");
   const TIP = document.querySelector(".score-tip");
-  const STAFF = 36, ABOVE = 22, BELOW = 14, HEAD = 26, LEFT = 14, RIGHT = 10;
+  const STAFF = 36, ABOVE = 22, BELOW = 14, HEAD = 26, LEFT = 14, RIGHT = 16;
   const EASY = 190;     /* pixels a second that are easy to read */
   const SVG = "http://www.w3.org/2000/svg";
 
@@ -35,7 +35,8 @@ const SCORE = (() => {
     return made;
   }
   const n1 = (value) => value.toFixed(1);
-  const degrees = (value) => `${value < 0 ? "−" : ""}${Math.abs(value).toFixed(Math.abs(value) < 10 ? 1 : 0)}°`;
+  const degrees = (value, digits = Math.abs(value) < 10 ? 1 : 0) =>
+    `${value < 0 ? "−" : ""}${Math.abs(value).toFixed(digits)}°`;
 
   /* Of a piece, the points of a curve between two times: `at(u)` gives y. */
   function course(stave, piece, from, to, x, at) {
@@ -111,8 +112,8 @@ const SCORE = (() => {
     }
     make(svg, "line", { class: "bar", x1: x(from), x2: x(from), y1: top, y2: bottom });
     if (isLast) {
-      make(svg, "line", { class: "bar", x1: x(to) - 6, x2: x(to) - 6, y1: top, y2: bottom });
-      make(svg, "line", { class: "bar last", x1: x(to) - 1, x2: x(to) - 1, y1: top, y2: bottom });
+      make(svg, "line", { class: "bar", x1: x(to) + 5, x2: x(to) + 5, y1: top, y2: bottom });
+      make(svg, "line", { class: "bar last", x1: x(to) + 10, x2: x(to) + 10, y1: top, y2: bottom });
     }
     drawn.forEach((stave, n) => drawStave(svg, stave, n, from, to, x, HEAD + ABOVE + n * step));
     for (let first = 0; first < drawn.length;) {
@@ -154,8 +155,8 @@ const SCORE = (() => {
     title.textContent = `${stave.joint}, ${stave.movement}`;
     const words = document.createElement("span");
     words.textContent = a0 === a1
-      ? `silence at ${a0.toFixed(1)}° for ${(t1 - t0).toFixed(3)} s, from ${t0.toFixed(2)} s`
-      : `${a0.toFixed(1)}° to ${a1.toFixed(1)}° in ${(t1 - t0).toFixed(3)} s, from ${t0.toFixed(2)} s; T = ${stave.skews[k].toFixed(2)}; RMS of the stave ${stave.rms.toFixed(2)}°`;
+      ? `silence at ${degrees(a0, 1)} for ${(t1 - t0).toFixed(3)} s, from ${t0.toFixed(2)} s`
+      : `${degrees(a0, 1)} to ${degrees(a1, 1)} in ${(t1 - t0).toFixed(3)} s, from ${t0.toFixed(2)} s; T = ${stave.skews[k].toFixed(2)}; RMS of the stave ${stave.rms.toFixed(2)}°`;
     TIP.replaceChildren(title, words);
     TIP.hidden = false;
     const box = TIP.getBoundingClientRect();
