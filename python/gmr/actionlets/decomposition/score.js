@@ -84,6 +84,15 @@ const SCORE = (() => {
         make(group, "circle", { class: "turn", cx: n1(x(time)), cy: n1(y(stave.angles[n])), r: 1.7 });
       }
     });
+    /* Whole stretches of a stave can be pointed at, also with a finger. */
+    for (let piece = 0; piece < stave.skews.length; piece += 1) {
+      const begin = Math.max(from, stave.times[piece]), end = Math.min(to, stave.times[piece + 1]);
+      if (end <= begin) continue;
+      make(group, "rect", {
+        class: "hit", x: n1(x(begin)), width: n1(x(end) - x(begin)), y: top - 7, height: STAFF + 14,
+        "data-stave": number, "data-piece": piece,
+      });
+    }
     const label = make(group, "text", { x: x(from), y: top - 8 });
     if (number === 0 || drawn[number - 1].joint !== stave.joint) {
       const joint = document.createElementNS(SVG, "tspan");
