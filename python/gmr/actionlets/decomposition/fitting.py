@@ -8,7 +8,8 @@ becomes a silence.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -52,6 +53,10 @@ _HASTY: Final = 0.15
 _STILL: Final = 0.25
 """Share of the tolerance: what travels less is a silence."""
 
+_TRIAL: Final = 12
+_FINAL: Final = 40
+"""Steps of refinement, at most: of what may be replaced, and of what is given back."""
+
 _BATCH: Final = 400_000
 """Samples that are refined at once: bounds the memory."""
 
@@ -92,68 +97,87 @@ def decompose_curves(
     curves = list(values.T)
     found: list[Track] = []
     for first in range(0, len(curves), at_once):
-        outlines = _fitted(t, curves[first : first + at_once], tolerance)
+        outlines = _fitted(_Task(t, curves[first : first + at_once], tolerance))
         found += [outline.track() for outline in outlines]
     return found
 
 
-def _fitted(t: Floats, curves: Sequence[Floats], tolerance: float) -> list[Outline]:
-    price = _WORTH * tolerance**2
-    shortest = min(_SHORTEST, float(t[-1] - t[0]) / 4)
-    still = _STILL * tolerance
-    found = [_on_lattice(t, curve, tolerance, price, shortest) for curve in curves]
-    found = [_with_silences(outline, still) for outline in refined(t, curves, found, shortest)]
-    found = refined(t, curves, found, shortest)
-    costs = [_cost(t, curve, outline, price) for curve, outline in zip(curves, found, strict=True)]
+@dataclass(frozen=True, slots=True)
+class _Task:
+    """What is to be fitted, and what is asked of it: radians and seconds."""
+
+    times: Floats
+    curves: Sequence[Floats]
+    tolerance: float
+
+    @property
+    def price(self) -> float:
+        return _WORTH * self.tolerance**2
+
+    @property
+    def shortest(self) -> float:
+        return min(_SHORTEST, float(self.times[-1] - self.times[0]) / 4)
+
+    def cost(self, n: int, outline: Outline) -> float:
+        """Of an outline of curve ``n``: its squared error over time, and the price of its pieces."""
+        squares = (outline.at(self.times - self.times[0] + outline.times[0]) - self.curves[n]) ** 2
+        error = np.sum(np.diff(self.times) * (squares[1:] + squares[:-1]) / 2)
+        return float(error) + self.price * len(outline.skews)
+
+    def settled(self, outlines: Mapping[int, Outline]) -> dict[int, Outline]:
+        """Outlines by the numbers of their curves, refined. What hardly travels is known only then; that it
+        stands still leaves its neighbours room for more."""
+        for _ in range(2):
+            curves = [self.curves[n] for n in outlines]
+            found = refined(self.times, curves, list(outlines.values()), self.shortest, _TRIAL)
+            still = [_with_silences(outline, _STILL * self.tolerance) for outline in found]
+            outlines = dict(zip(outlines, still, strict=True))
+        return dict(outlines)
+
+
+def _fitted(task: _Task) -> list[Outline]:
+    found = task.settled({n: _on_lattice(task, n) for n in range(len(task.curves))})
+    costs = {n: task.cost(n, outline) for n, outline in found.items()}
 
     def weighed_again(n: int) -> Outline:
-        return _weighed_again(t, curves[n], found[n], tolerance, price, shortest)
+        return _weighed_again(task, n, found[n])
 
-    for propose in (
-        weighed_again,
-        lambda n: _calmer(found[n], 99),
-        weighed_again,
-        lambda n: _calmer(found[n], 1),
-    ):
-        proposed = {n: propose(n) for n in range(len(curves))}
-        changed = [n for n, outline in proposed.items() if len(outline.skews) != len(found[n].skews)]
-        these = [curves[n] for n in changed]
-        for _ in range(
-            2
-        ):  # what hardly travels is known once it is refined, and makes room for its neighbours
-            trial = refined(t, these, [proposed[n] for n in changed], shortest)
-            proposed |= {n: _with_silences(outline, still) for n, outline in zip(changed, trial, strict=True)}
-        for n in changed:
-            cost = _cost(t, curves[n], proposed[n], price)
+    def calmer(n: int) -> Outline:
+        return _calmer(found[n], len(found[n].skews))
+
+    def without_hastiest(n: int) -> Outline:
+        return _calmer(found[n], 1)
+
+    for proposal in (weighed_again, calmer, weighed_again, without_hastiest):
+        proposed = {n: proposal(n) for n in found}
+        changed = {n: one for n, one in proposed.items() if len(one.skews) != len(found[n].skews)}
+        for n, outline in task.settled(changed).items():
+            cost = task.cost(n, outline)
             if cost < costs[n]:
-                found[n], costs[n] = proposed[n], cost
-    return found
+                found[n], costs[n] = outline, cost
+    outlines = list(found.values())
+    return refined(task.times, task.curves, outlines, task.shortest, _FINAL)
 
 
-def _cost(t: Floats, curve: Floats, outline: Outline, price: float) -> float:
-    squares = (outline.at(t - t[0] + outline.times[0]) - curve) ** 2
-    return float(np.trapezoid(squares, t)) + price * len(outline.skews)
-
-
-def _on_lattice(t: Floats, curve: Floats, tolerance: float, price: float, shortest: float) -> Outline:
+def _on_lattice(task: _Task, n: int) -> Outline:
+    t, curve = task.times, task.curves[n]
     count = max(1, round((t[-1] - t[0]) / max(_LATTICE, float(np.diff(t).mean()))))
     instants = np.linspace(t[0], t[-1], count + 1)
-    reach = max(_REACH * float(np.ptp(curve)), 0.4 * tolerance)
+    reach = max(_REACH * float(np.ptp(curve)), 0.4 * task.tolerance)
     levels = np.interp(instants, t, curve)[:, None] + reach * _LEVELS
-    return cheapest(t, curve, Candidates(instants, levels), price, shortest, _LONGEST)
+    return cheapest(t, curve, Candidates(instants, levels), task.price, task.shortest, _LONGEST)
 
 
-def _weighed_again(
-    t: Floats, curve: Floats, outline: Outline, tolerance: float, price: float, shortest: float
-) -> Outline:
+def _weighed_again(task: _Task, n: int, outline: Outline) -> Outline:
     """The cheapest track over the instants of this one, and some near them."""
     inner = outline.times[1:-1]
     beside = np.minimum(0.25 * np.diff(outline.times)[:-1], _LATTICE)
     after = np.minimum(0.25 * np.diff(outline.times)[1:], _LATTICE)
     middles = (outline.times[:-1] + outline.times[1:])[np.diff(outline.times) < _HASTY] / 2
     instants = np.unique(np.concatenate([outline.times, inner - beside, inner + after, middles]))
-    levels = outline.at(instants)[:, None] + 0.3 * tolerance * _LEVELS
-    return cheapest(t, curve, Candidates(instants, levels), price, shortest, _LONGEST, FINE)
+    levels = outline.at(instants)[:, None] + 0.3 * task.tolerance * _LEVELS
+    candidates = Candidates(instants, levels)
+    return cheapest(task.times, task.curves[n], candidates, task.price, task.shortest, _LONGEST, FINE)
 
 
 def _calmer(outline: Outline, most: int) -> Outline:
