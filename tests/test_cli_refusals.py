@@ -37,7 +37,11 @@ def process(*args: str | Path, **options: Any) -> subprocess.CompletedProcess[st
     ("typed", "says"),
     [
         ("evalute", "Did you mean evaluate?"),
-        ("nonsense", "There are evaluate, complete, info, convert, roots, view, skin, synthesize, bench, demo."),
+        (
+            "nonsense",
+            "There are evaluate, complete, info, convert, roots, view, skin, synthesize, decompose, bench, "
+            "demo.",
+        ),
     ],
 )
 def test_an_unknown_command_gets_the_names_near_it(typed: str, says: str, capsys: Captured) -> None:

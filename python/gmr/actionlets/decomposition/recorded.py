@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.actionlets.body import Body
+from gmr.actionlets.posing import motion as posed
+from gmr.actionlets.reading import read
 from gmr.actionlets.score import Score
 from gmr.dof_rows import DofRows
 from gmr.errors import ActionletError
@@ -129,9 +131,6 @@ def _of_file(motion: Motion, name: str) -> Recorded:
 
 
 def _of_body(motion: Motion, body: Body) -> Recorded:
-    from gmr.actionlets.posing import motion as posed
-    from gmr.actionlets.reading import read
-
     seen = read(body, motion)
     columns = np.array([n for n, dof in enumerate(body.dofs) if not dof.is_length])
 
