@@ -25,7 +25,11 @@ class Cluster:
 def cluster(folder: Path, workers: int = 2) -> Iterator[Cluster]:
     """A cluster whose workers know the modules of the tests."""
     paths = [str(HERE), os.environ.get("PYTHONPATH", "")]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, paths))}
+    environment = os.environ | {
+        "PYTHONPATH": os.pathsep.join(filter(None, paths)),
+        # How long a scheduler asks a dead worker for a result before it has it made anew; 30 s otherwise.
+        "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "3s",
+    }
     file = folder / "scheduler.json"
 
     def started(*arguments: str) -> subprocess.Popen[str]:

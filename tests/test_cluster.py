@@ -105,11 +105,6 @@ def test_a_cluster_does_every_job_once_though_a_worker_is_killed(tmp_path: Path)
             list(results(jobs.refuse_three, NUMBERS, cluster=held.address))
 
 
-def test_a_cluster_of_this_machine_begins_and_ends_with_the_work() -> None:
-    pytest.importorskip("distributed")
-    assert sorted(results(jobs.square, NUMBERS, cluster="local", workers=2)) == SQUARES
-
-
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense", "http://127.0.0.1:1"])
 def test_an_address_where_no_scheduler_answers_is_said(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 import uuid
 from collections import deque
@@ -9,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Final, TypeVar
 
+from gmr.cluster.interrupts import interrupts_held
 from gmr.cluster.running import LOCAL
 from gmr.errors import GmrError, MissingExtraError
 
@@ -88,10 +90,11 @@ def _threads(client: Any) -> int:
 def _client(distributed: Any, cluster: str, workers: int) -> Iterator[Any]:
     """A connection; the local cluster begins and ends with it."""
     if cluster == LOCAL:
-        with (
-            distributed.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0") as own,
-            distributed.Client(own, set_as_default=False) as client,
-        ):
+        with interrupts_held():
+            own = distributed.LocalCluster(
+                n_workers=workers, threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
+            )
+        with own, distributed.Client(own, set_as_default=False) as client:
             yield client
         return
     try:

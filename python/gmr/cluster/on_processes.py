@@ -10,9 +10,9 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from typing import Final, TypeVar
 
+from gmr.cluster.interrupts import interrupts_held
 from gmr.errors import GmrError
 
 __all__ = ["on_processes"]
@@ -39,7 +39,7 @@ def on_processes(
         try:
             while waiting or running:
                 while waiting and len(running) < _AHEAD * workers:
-                    with _interrupts_held():  # a process is started by it
+                    with interrupts_held():  # a process is started by it
                         running[pool.submit(work, jobs[waiting[0]])] = waiting[0]
                     waiting.popleft()
                 for future in wait(running, return_when=FIRST_COMPLETED).done:
@@ -77,16 +77,3 @@ def _end_with_the_command() -> None:
     assert command is not None
     command.join()
     os._exit(1)
-
-
-@contextmanager
-def _interrupts_held() -> Iterator[None]:
-    """Interrupts wait, here and in processes that are started meanwhile, until these have begun."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
