@@ -10,13 +10,14 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from gmr.actionlets import posing, travel
+    from gmr.actionlets import corpus, posing, travel
     from gmr.actionlets.actionlet import Actionlet
     from gmr.actionlets.actions.action import Action
     from gmr.actionlets.actions.library import Library, library
     from gmr.actionlets.actions.performance import Performance
     from gmr.actionlets.actions.taking import Take
     from gmr.actionlets.body import Body
+    from gmr.actionlets.corpus.reading import Corpus
     from gmr.actionlets.decomposition import Decomposed, decompose, decompose_curve, decompose_curves
     from gmr.actionlets.dofs import Dof
     from gmr.actionlets.measured import Measured
@@ -31,6 +32,7 @@ __all__ = [
     "Action",
     "Actionlet",
     "Body",
+    "Corpus",
     "Decomposed",
     "Dof",
     "Library",
@@ -41,6 +43,7 @@ __all__ = [
     "Take",
     "Track",
     "concatenate",
+    "corpus",
     "decompose",
     "decompose_curve",
     "decompose_curves",
@@ -63,6 +66,7 @@ _HOMES = {
     "Action": "gmr.actionlets.actions.action",
     "Actionlet": "gmr.actionlets.actionlet",
     "Body": "gmr.actionlets.body",
+    "Corpus": "gmr.actionlets.corpus.reading",
     "Decomposed": "gmr.actionlets.decomposition",
     "Dof": "gmr.actionlets.dofs",
     "Library": "gmr.actionlets.actions.library",
@@ -88,7 +92,7 @@ _HOMES = {
     "synchronise": "gmr.actionlets.operations",
     "variation": "gmr.actionlets.mutation",
 }
-_MODULES = frozenset({"posing", "travel"})
+_MODULES = frozenset({"corpus", "posing", "travel"})
 
 
 def __getattr__(name: str) -> "Any":

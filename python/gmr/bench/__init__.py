@@ -14,6 +14,7 @@ from gmr.bench import (
     roots,
     search,
     skinning,
+    synthesis,
     trials,
 )
 from gmr.bench.harness import Contest, Row, one_core, run_contest
@@ -41,6 +42,7 @@ CLAIMS: Final[dict[str, Callable[[int], Iterator[Contest]]]] = {
     "search-calls": search.calls,
     "search-build": search.build,
     "trials": trials.constant_trials,
+    "synthesis": synthesis.takes,
 }
 """What can be measured, by the name that the command line takes."""
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from gmr.cli.common import STDIO, Rate, say, write_output
+from gmr.cli.corpus import Several, corpus, corpus_options
 
 if TYPE_CHECKING:
     from gmr.actionlets.actions.library import Library
@@ -46,38 +47,50 @@ class Setting(click.ParamType[tuple[str, "Profile"]]):
 
 
 @click.command(short_help="Make a motion that nobody recorded.")
-@click.argument("action", required=False)
+@click.argument("action", required=False, metavar="ACTION[,ACTION...]")
 @click.option(
-    "--out", metavar="FILE", help="Where to write the motion, by suffix; - is standard output (BVH)."
-)
+    "--out", metavar="FILE|FOLDER", help="Where to write the motion, by suffix, - is standard output (BVH); "
+    "or the corpus.",
+)  # fmt: skip
 @click.option("--list", "is_list", is_flag=True, help="Print the actions, their parameters and ranges.")
-@click.option("--seconds", type=float, help="How long; as the action says otherwise.")
+@click.option("--seconds", type=Several(click.FLOAT), help="How long; as the action says otherwise.")
 @click.option("--fps", type=Rate(), default=120.0, show_default=True, help="Frames a second.")
-@click.option("--speed", type=float, help="Metres a second: --set speed=...")
-@click.option("--turn-rate", type=float, help="Degrees a second, to the left: --set turn_rate=...")
-@click.option("--set", "settings", type=Setting(), multiple=True, help="Any parameter of the action.")
+@click.option("--speed", type=Several(click.FLOAT), help="Metres a second: --set speed=...")
+@click.option(
+    "--turn-rate", type=Several(click.FLOAT), help="Degrees a second, to the left: --set turn_rate=..."
+)
+@click.option(
+    "--set", "settings", type=Several(Setting()), multiple=True, help="Any parameter of the action."
+)
 @click.option("--seed", type=int, default=0, show_default=True, help="Which performer, of those that vary.")
 @click.option(
-    "--variation", type=float, default=0.0, show_default=True,
-    help="How much performers vary: 0 (as written) to 1.",
+    "--variation", type=Several(click.FLOAT),
+    help="How much performers vary: 0 (as written) to 1.  [default: 0; of a corpus: 0..1]",
 )  # fmt: skip
-@click.option("--height", type=float, help="Of the body, metres [1.75].")
+@click.option("--height", type=Several(click.FLOAT), help="Of the body, metres [1.75].")
 @click.option(
-    "--sex", type=click.Choice(["male", "female", "average"]), default="average", show_default=True,
-    help="Whose proportions and masses it has.",
+    "--sex", type=Several(click.Choice(["male", "female", "average"])), default="average",
+    show_default=True, help="Whose proportions and masses it has.",
 )  # fmt: skip
 @click.option(
     "--library", "files", type=click.Path(), multiple=True, help="Your own file of actions; repeatable."
 )
 @click.option("--strip", type=click.Path(path_type=Path), help="Draw a film strip too, .png or .svg.")
+@corpus_options
 def synthesize(
     action: str | None,
     out: str | None,
     is_list: bool,
     strip: Path | None,
     files: tuple[str, ...],
+    variations: int | None,
+    suffix: str,
+    workers: int | None,
+    cluster: str | None,
+    as_json: bool,
+    quiet: bool,
     **options: Any,
-) -> None:
+) -> int:
     """Make a motion of an action of the library.
 
     \b
@@ -88,17 +101,33 @@ def synthesize(
     gmr synthesize limp --library mine.toml --out limp.bvh
 
     The same arguments make the same motion.
+
+    With --variations it makes a corpus: labelled takes in a folder, a manifest, on all cores or a cluster.
+    A value may then be drawn from a range, 0.8..1.6, or taken in turn, 0.8,1.2,1.6; parameters that are not
+    set are drawn from all of theirs. Stopped at any moment, the same command goes on.
+
+    \b
+    gmr synthesize walk,run --variations 1000 --out corpus/
+    gmr synthesize walk --variations 600 --out paces/ --set speed=0.8,1.2,1.6 --height 1.5..1.9
+    gmr synthesize walk,run --variations 100000 --out big/ --cluster tcp://10.0.0.1:8786
     """
     from gmr.actionlets import library
 
     if action is None and not is_list:
         raise click.UsageError("name an ACTION, or give --list to see them")
+    if variations is not None and not is_list:
+        if strip is not None or out in (None, STDIO):
+            raise click.UsageError("a corpus is written into a folder; give --out FOLDER, and no --strip")
+        return corpus(
+            str(action).split(","), variations, Path(str(out)), suffix, files,
+            workers=workers, cluster=cluster, as_json=as_json, quiet=quiet, **options,
+        )  # fmt: skip
     if action is not None and not is_list and out is None and strip is None:
         raise click.UsageError("give --out FILE, --strip FILE or both")
     known = library(*files)
     if is_list:
         click.echo("\n".join(_listed(known)))
-        return
+        return 0
     take = made(known, str(action), **options)
     if strip is not None:
         _draw(take, strip)
@@ -107,6 +136,7 @@ def synthesize(
         say(f"{out}: {take.motion.frame_count} frames, {take.performance.seconds:.3g} s of '{action}'")
         for file in beside:
             say(f"{file} was written beside")
+    return 0
 
 
 def made(
@@ -119,9 +149,11 @@ def made(
     turn_rate: float | None,
     settings: tuple[tuple[str, Profile], ...],
     seed: int,
-    variation: float,
+    variation: float | None,
     height: float | None,
+    percentile: float | None,
     sex: str,
+    body: str,
 ) -> Take:
     """The take that the command's options ask for."""
     from gmr.actionlets import Body
@@ -130,7 +162,8 @@ def made(
     chosen |= {
         name: value for name, value in (("speed", speed), ("turn_rate", turn_rate)) if value is not None
     }
-    return known[action].take(seconds, fps, seed, Body.of(height, sex), variation, **chosen)
+    who = Body.of(height, sex, percentile, detailed=body == "detailed")
+    return known[action].take(seconds, fps, seed, who, variation or 0.0, **chosen)
 
 
 def _draw(take: Take, strip: Path) -> None:

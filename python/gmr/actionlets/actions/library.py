@@ -18,7 +18,7 @@ from gmr.actionlets.actions.tables import nearest
 from gmr.actionlets.actions.units import Unit
 from gmr.errors import ActionletError, FormatError
 
-__all__ = ["Library", "library"]
+__all__ = ["Library", "contents", "library"]
 
 
 @dataclass(frozen=True)
@@ -66,15 +66,22 @@ def library(*files: str | os.PathLike[str]) -> Library:
     Raises:
         FormatError: a file that is no library; names file, table, key, value and what was expected.
     """
-    if not files:
-        return _shipped_alone()
-    own = {}
+    return _library(contents(*files)) if files else _shipped_alone()
+
+
+def contents(*files: str | os.PathLike[str]) -> dict[str, bytes]:
+    """What the files of a library hold, by name: of those that ship with gmr, and of your own.
+
+    Raises:
+        FormatError: a file that cannot be read.
+    """
+    found = _shipped()
     for file in files:
         try:
-            own[os.fspath(file)] = Path(file).read_bytes()
+            found[os.fspath(file)] = Path(file).read_bytes()
         except OSError as error:
             raise FormatError(f"it cannot be read: {error.strerror}", file=os.fspath(file)) from error
-    return _library(_shipped() | own)
+    return found
 
 
 @cache
