@@ -179,6 +179,21 @@ def test_contacts_follow_the_phases_that_a_variation_moves(seed: int, variation:
         assert 0.05 < (inside[0] - lift) / (strike - lift) < 0.6
 
 
+def test_a_users_file_does_not_change_how_what_ships_varies(tmp_path: Path) -> None:
+    alone, beside = (
+        known["walk"].perform(seed=3, variation=0.4) for known in (library(), swinging(tmp_path))
+    )
+    assert alone.score == beside.score
+
+
+def test_a_variation_takes_velocity_functions_of_the_same_type_from_the_library() -> None:
+    done = library()["march"].perform(seconds=1, seed=1, variation=1).score["left_shoulder.flexion"]
+    written = library()["march"].perform(seconds=1).score["left_shoulder.flexion"]
+    skews = [[p.skew for p in track.pieces if isinstance(p, Actionlet)] for track in (done, written)]
+    assert set(np.round(skews[1], 6)) == {0.5}
+    assert np.abs(np.array(skews[0]) - 0.5).max() > 0.02
+
+
 def test_a_variation_of_nothing_is_the_action_as_written() -> None:
     action = library()["run"]
     assert action.perform(seconds=3, seed=5).score == action.perform(seconds=3).score

@@ -17,7 +17,7 @@ from gmr.actionlets.actions.plan import Plan, performed
 from gmr.actionlets.actions.timeline import MOST_SECONDS, Profile, Timeline, chosen_parameters
 from gmr.actionlets.actions.units import SIDES, ActionUnit, Parameter
 from gmr.actionlets.actions.unrolling import all_knots, intervals, labelled
-from gmr.actionlets.actions.variation import varied
+from gmr.actionlets.actions.variation import Pool, varied
 from gmr.errors import ActionletError
 
 if TYPE_CHECKING:
@@ -136,22 +136,23 @@ class SingleAction(Action):
         courses: the extremes of each degree of freedom.
         ranges: by degree of freedom its range of motion; degrees, metres for the root's lengths.
         factors: by degree of freedom, radians (or metres) in one of those.
+        pool: actionlets from which variations choose others of the same type.
     """
 
     unit: ActionUnit
     courses: Courses
     ranges: Mapping[str, tuple[float, float]]
     factors: Mapping[str, float]
+    pool: Pool
 
     @classmethod
-    def of(cls, unit: ActionUnit, courses: Courses, anatomy: Anatomy) -> SingleAction:
+    def of(cls, unit: ActionUnit, courses: Courses, anatomy: Anatomy, pool: Pool) -> SingleAction:
         """The action with the units of the body's degrees of freedom."""
         degree = float(np.radians(1.0))
         factors = {dof: 1.0 if dof in anatomy.lengths else degree for dof in courses}
         ranges = {dof: anatomy.ranges[dof] for dof in courses}
-        return cls(
-            unit.name, unit.about, unit.words, unit.aliases, unit.parameters, unit, courses, ranges, factors
-        )  # fmt: skip
+        card = unit.name, unit.about, unit.words, unit.aliases, unit.parameters
+        return cls(*card, unit, courses, ranges, factors, pool)
 
     def plan(
         self,
@@ -162,7 +163,7 @@ class SingleAction(Action):
         begins: float | None = None,
     ) -> Plan:
         """What is to be done when."""
-        who = varied(self.unit, self.courses, self.ranges, seed, variation)
+        who = varied(self.unit, self.courses, self.ranges, self.pool, seed, variation)
         unit = who.unit if begins is None else replace(who.unit, begins=begins)
         lasts = self._seconds(seconds, unit, chosen, who.tempo)
         timeline = Timeline.of(unit, chosen, lasts, who.tempo)

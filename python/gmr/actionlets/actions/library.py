@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from pathlib import Path
+from typing import Final
 
 from gmr.actionlets.actions.action import Action, SingleAction
 from gmr.actionlets.actions.anatomy import the_anatomy
@@ -16,9 +17,13 @@ from gmr.actionlets.actions.reading import Content, read_files
 from gmr.actionlets.actions.sequence import sequence_of
 from gmr.actionlets.actions.tables import nearest
 from gmr.actionlets.actions.units import Unit
+from gmr.actionlets.actions.variation import Pool
 from gmr.errors import ActionletError, FormatError
 
 __all__ = ["Library", "contents", "library"]
+
+_FOLDER: Final = "gmr/data/actions/"
+"""What the names of the files that ship begin with."""
 
 
 @dataclass(frozen=True)
@@ -94,17 +99,22 @@ def _shipped() -> dict[str, bytes]:
     files = sorted(
         (file for file in folder.iterdir() if file.name.endswith(".toml")), key=lambda file: file.name
     )
-    return {file.name: file.read_bytes() for file in files}
+    return {f"{_FOLDER}{file.name}": file.read_bytes() for file in files}
 
 
 def _library(files: Mapping[str, bytes]) -> Library:
     content, anatomy = read_files(files), the_anatomy()
     for part in content.units.values():
         check_unit(part, content.units, anatomy)
-    actions: dict[str, Action] = {}
-    for name, unit in content.actions.items():
-        courses = action_courses(unit, content.units, anatomy)
-        actions[name] = SingleAction.of(mirrored_contacts(unit), courses, anatomy)
+    written = {
+        name: (mirrored_contacts(unit), action_courses(unit, content.units, anatomy))
+        for name, unit in content.actions.items()
+    }
+    # A user's file does not change how what ships varies.
+    pool = Pool([one for one in written.values() if one[0].file.startswith(_FOLDER)])
+    actions: dict[str, Action] = {
+        name: SingleAction.of(unit, courses, anatomy, pool) for name, (unit, courses) in written.items()
+    }
     for name, (origin, steps) in content.sequences.items():
         actions[name] = sequence_of(origin, steps, actions)
     return Library(actions, content.units, _aliases(content, actions))

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -19,11 +20,11 @@ from gmr.actionlets.actionlet import Actionlet
 from gmr.actionlets.actions.parts import Courses
 from gmr.actionlets.actions.units import ActionUnit, Extreme
 from gmr.actionlets.actions.values import Value
-from gmr.actionlets.mutation import mutate
+from gmr.actionlets.mutation import mutate, substituted
 from gmr.actionlets.score import Score
-from gmr.actionlets.track import Track
+from gmr.actionlets.track import Piece, Track
 
-__all__ = ["Variation", "varied"]
+__all__ = ["Pool", "Variation", "varied"]
 
 Floats = NDArray[np.float64]
 
@@ -46,6 +47,37 @@ class Variation:
     tempo: float = 1.0
 
 
+@dataclass(frozen=True, eq=False)
+class Pool:
+    """The actionlets of some actions, to choose others of the same type from.
+
+    Args:
+        written: actions and their extremes.
+    """
+
+    written: Sequence[tuple[ActionUnit, Courses]] = ()
+
+    @cached_property
+    def pieces(self) -> Mapping[str, tuple[Piece, ...]]:
+        """All that move, by the degree of freedom without its side."""
+        found: dict[str, list[Piece]] = {}
+        for unit, courses in self.written:
+            for dof, course in courses.items():
+                track = _track(_rows(course, _defaults(unit)), unit.cyclic)
+                moving = [piece for piece in track.pieces if piece.travel]
+                found.setdefault(_sideless(dof), []).extend(dict.fromkeys(moving))
+        return {dof: tuple(pieces) for dof, pieces in found.items()}
+
+
+def _sideless(dof: str) -> str:
+    return dof.removeprefix("left_").removeprefix("right_")
+
+
+def _defaults(unit: ActionUnit) -> dict[str, float]:
+    chosen = {name: parameter.default for name, parameter in unit.parameters.items()}
+    return chosen | dict.fromkeys(unit.derived, 0.0)
+
+
 @dataclass(frozen=True)
 class _Changes:
     """What is changed in one degree of freedom, by the number of the extreme in the file.
@@ -65,6 +97,7 @@ def varied(
     unit: ActionUnit,
     courses: Courses,
     ranges: Mapping[str, tuple[float, float]],
+    pool: Pool,
     seed: int,
     amount: float,
 ) -> Variation:
@@ -72,17 +105,22 @@ def varied(
 
     Args:
         ranges: by degree of freedom, in the file's units.
+        pool: the skew of each actionlet goes the way ``amount`` towards that of another of its type in here.
         seed: any whole number; each tells a performer, whoever else there is.
         amount: 0 to 1.
     """
     if amount == 0:
         return Variation(unit, courses)
-    defaults = {name: parameter.default for name, parameter in unit.parameters.items()}
-    defaults |= dict.fromkeys(unit.derived, 0.0)
+    defaults = _defaults(unit)
     rows = {dof: _rows(course, defaults) for dof, course in courses.items()}
     cycle = Score({dof: _track(one, unit.cyclic) for dof, one in rows.items()})
-    other = mutate(cycle, np.random.default_rng(seed % 2**64), _MOST * amount, ranges)
-    changes = {dof: _changes(one, cycle[dof], other[dof], unit.cyclic) for dof, one in rows.items()}
+    rng = np.random.default_rng(seed % 2**64)
+    other = mutate(cycle, rng, _MOST * amount, ranges)
+    swapped = substituted(cycle, {dof: pool.pieces.get(_sideless(dof), ()) for dof in cycle.dofs}, rng)
+    changes = {
+        dof: _changes(one, cycle[dof], other[dof], swapped[dof], amount, unit.cyclic)
+        for dof, one in rows.items()
+    }
     warp = _Warp.between(cycle, other)
 
     def moved(phase: Value) -> Value:
@@ -124,14 +162,18 @@ def _later(rows: Floats, phase: float) -> Floats:
     return moved
 
 
-def _changes(rows: Floats, before: Track, after: Track, is_cyclic: bool) -> _Changes:
-    """What the mutation of its track did to each extreme."""
+def _changes(
+    rows: Floats, before: Track, after: Track, swapped: Track, amount: float, is_cyclic: bool
+) -> _Changes:
+    """What mutation did to each extreme of a track, and the way ``amount`` to other velocity functions."""
     angles = rows[:, 1]
     phases = rows[:, 0] % 1.0 if is_cyclic else rows[:, 0]
     places = np.abs(before.times - phases[:, None]).argmin(axis=1)
     moved = after.extremes[places] - before.extremes[places]
-    ends = np.maximum(places - 1, 0)
-    tilts = np.array([_skew(after, end) - _skew(before, end) for end in ends.tolist()])
+    # The piece that ends at the first extreme is the last one of the cycle before.
+    ends = np.where(places > 0, places - 1, len(before.pieces) - 1 if is_cyclic else 0)
+    old, new, others = (np.array([_skew(track, end) for end in ends]) for track in (before, after, swapped))
+    tilts = new - old + amount * (others - old)
     ways = np.abs(angles[:, None] - np.stack([np.roll(angles, 1), np.roll(angles, -1)], axis=1))
     back = ways[:, 0] < ways[:, 1]
     numbers = np.arange(len(rows))
