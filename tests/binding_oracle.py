@@ -96,13 +96,17 @@ def defined(figure: Figure) -> tuple[Array, NDArray[np.intp]]:
     for b in range(len(bones)):
         mine = (nearest == b) & projects[:, b]
         if mine.any():
-            across[b] = 1.1 * aside[mine, b].max()
+            across[b] = max(aside[mine, b].max(), 1e-6 * length[b])
     rise = np.where(open_head, 1, np.clip((s + margin) / (2 * margin), 0, 1))
     fall = np.where(open_tail, 1, np.clip((length + margin - s) / (2 * margin), 0, 1))
     ends = np.concatenate([heads, tails])
     slack = 0.01 * np.linalg.norm(ends - ends.mean(axis=0), axis=1).max()
-    taken = (aside <= across) & (distance <= 1.5 * distance.min(axis=1, keepdims=True) + slack) & long
-    gradient = np.where(taken, rise * fall, 0)
+    least = distance.min(axis=1, keepdims=True)
+    reach = 1.5 * least + slack
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = np.where(distance > least, (reach - distance) / (reach - least), 1.0)
+        beside = np.where(long, 2 - aside / across, 0).clip(0, 1)
+    gradient = rise * fall * beside * share.clip(0, 1)
 
     weights = np.zeros((len(vertices), count))
     for b, joint in enumerate(owners):

@@ -120,12 +120,15 @@ def test_two_consecutive_bones_share_their_joint_half_and_half_and_keep_their_mi
     assert np.abs(middles[1] - [0, 1, 0]).max() < limit
 
 
-def test_the_weight_falls_linearly_through_the_joint() -> None:
+def test_the_weight_falls_through_the_joint() -> None:
     vertices, faces = tube(8.0, 1.6, 81)
-    found = weights_of(Figure(vertices, faces, chain(0, 4, 8, 12)), "gradient")
-    x = vertices[:, 0]
-    through = np.abs(x - 4) <= 1.4
-    assert np.abs(found[through, 1] - (x[through] - 2.6) / 2.8).max() < 1e-6
+    found = weights_of(Figure(vertices, faces, chain(0, 4, 8, 12)), "gradient")[::12, 1]
+    x = vertices[::12, 0]
+    assert found[x == 4] == pytest.approx(0.5)
+    assert (np.diff(found[x < 6]) >= -1e-7).all()
+    assert (found[x < 2.6] == 0).all()
+    through = np.abs(x - 4) <= 0.4
+    assert np.abs(found[through] - (x[through] - 2.6) / 2.8).max() < 0.02, "linearly, where both are as near"
 
 
 def test_a_vertex_far_from_all_but_one_bone_follows_it_alone() -> None:
@@ -328,3 +331,19 @@ def test_heat_solves_its_equation() -> None:
     nearest[np.isclose(x, 8)] = [0, 0.5, 0.5]
     expected = np.linalg.solve(matrix + np.diag(warmth), warmth[:, None] * nearest)
     assert np.abs(found - expected).max() < 1e-5
+
+
+def test_weights_do_not_jump_from_one_limb_to_the_other() -> None:
+    """From the one leg straight over to the other, in small steps, weights go over in small steps."""
+    names, parents = ["hips", "left", "left_end", "right", "right_end"], [-1, 0, 1, 0, 3]
+    offsets = [(0, 1, 0), (0.2, 0, 0), (0, -0.8, 0), (-0.2, 0, 0), (0, -0.8, 0)]
+    ends = [End.JOINT, End.JOINT, End.SITE, End.JOINT, End.SITE]
+    legs = Skeleton.post_rotation(names, parents, offsets, ends=ends)
+    across = np.linspace(0.2, -0.2, 2001)
+    line = np.stack([across, np.full_like(across, 0.5), np.zeros_like(across)], axis=1)
+    weights, joints = bind(line, np.zeros((0, 3), int), legs)
+    found = dense(weights, joints, 5)
+    assert found[0, 1] == 1
+    assert found[-1, 3] == 1
+    assert found[1000, [1, 3]] == pytest.approx(0.5, abs=1e-3)
+    assert np.abs(np.diff(found, axis=0)).max() < 0.01

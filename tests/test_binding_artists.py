@@ -37,11 +37,11 @@ class Case(NamedTuple):
 
 
 CASES = [
-    Case("cesium_man.gltf", "gradient", 0.20, 0.93),
+    Case("cesium_man.gltf", "gradient", 0.195, 0.935),
     Case("cesium_man.gltf", "heat", 0.25, 0.95),
-    Case("fox.glb", "gradient", 0.56, 0.75),
+    Case("fox.glb", "gradient", 0.51, 0.75),
     Case("fox.glb", "heat", 0.64, 0.74),
-    Case("rigged_simple.gltf", "gradient", 0.10, 1.0),
+    Case("rigged_simple.gltf", "gradient", 0.095, 1.0),
     Case("rigged_simple.gltf", "heat", 0.12, 1.0),
 ]
 

@@ -96,8 +96,9 @@ def bind(
     ends. End Sites turn nothing and carry nothing. Where roots were moved, the joints are meant as they hang
     at home.
 
-    - ``"gradient"``: each bone has an oriented box that fits the vertices beside it; in it the weight is 1
-      along the bone and falls linearly through each of its joints. The largest of a joint's bones counts.
+    - ``"gradient"``: each bone has an oriented box round the vertices beside it; in it the weight is 1 along
+      the bone and falls linearly through each of its joints, across to the box's edge, and the farther the
+      bone is than the nearest. The largest of a joint's bones counts.
       A vertex in no box follows the nearest bone, and is then smoothed over the edges of the mesh.
     - ``"heat"``: bone heat: ``(C + M H) w = M H p``, C the cotangent Laplacian of the mesh, M the areas of
       its vertices, ``H = 1/d^2`` with d the distance to the nearest bone, p 1 for its joint; bones are not

@@ -25,8 +25,10 @@ _SPARSE_FPS = 30.0
 """Rate at which an animation is sampled whose keys are too far apart to be one for each frame."""
 _SLOWEST = 10.0
 """Keys a second below which they are taken to be far apart."""
-_SINGLE = 1e-3
-"""Share by which a rate from single-precision times may miss the whole number that was meant."""
+_ROUNDED = 1e-3
+"""Share by which a rate from times that a program rounded may miss the whole number that was meant."""
+_SINGLE = 1e-6
+"""The same for times that single precision alone rounded."""
 _MOST_FRAMES = 10**8
 
 
@@ -101,11 +103,15 @@ class Animation:
         keys = max((channel.times for channel in self.channels), key=len, default=np.zeros(0, np.float32))
         steps = np.diff(keys.astype(np.float64))
         steps = steps[steps > 0]
-        rate = 1 / float(np.median(steps)) if len(steps) else 0.0
+        rate, slack = 1 / float(np.median(steps)) if len(steps) else 0.0, _ROUNDED
         if rate < _SLOWEST:
             return _SPARSE_FPS
+        if np.abs(steps - 1 / rate).max() <= 4 * float(np.finfo(np.float32).eps) * abs(keys).max():
+            # Evenly apart but for the rounding of each time: from end to end the rate is told best, and a
+            # whole number that was not meant would leave the keys behind.
+            rate, slack = len(steps) / float(steps.sum()), _SINGLE
         whole = round(rate)
-        return float(whole) if abs(rate - whole) <= _SINGLE * rate else rate
+        return float(whole) if abs(rate - whole) <= slack * rate else rate
 
     def frame_times(self, fps: float | None = None) -> Array:
         """(F,) seconds from the first key to the last, ``fps`` a second; :attr:`fps` where left out.

@@ -1,8 +1,9 @@
 //! A bone, and the box round it.
 //!
-//! Along the bone the box reaches `m = 0.35 l` beyond each end, l being the length. Across, it is round: it reaches as
-//! far as 1.1 times the farthest vertex whose nearest bone this is and that projects onto it. So no direction across
-//! the bone is chosen, and a turned skeleton has the same boxes turned.
+//! Along the bone the box reaches `m = 0.35 l` beyond each end, l being the length. Across, it is round: r being as far
+//! as the farthest vertex whose nearest bone this is and that projects onto it, it holds all of a vertex within r, and
+//! none at 2 r. So no direction across the bone is chosen, and a turned skeleton has the same boxes turned; and no
+//! weight jumps at an edge of a box, for it has fallen to 0 there.
 //!
 //! At an open end, where no other bone meets this one, the box and what projects onto it go on for ever. A bone
 //! without length has no direction, hence no box.
@@ -14,10 +15,7 @@ use super::gradient::Near;
 /// How far a box reaches beyond the ends of its bone, and across where no vertex says: in lengths.
 const MARGIN: f64 = 0.35;
 
-/// How far a box reaches across, in distances of its farthest vertex.
-const ROOM: f64 = 1.1;
-
-/// The least that a box reaches across, in lengths, so that rounding throws nothing out that lies on the bone.
+/// The least radius of a box, in lengths, so that rounding throws nothing out that lies on the bone.
 const THINNEST: f64 = 1e-6;
 
 /// A segment that turns with a joint.
@@ -73,23 +71,24 @@ impl Bone {
 pub(super) struct Boxed {
     pub(super) bone: Bone,
     margin: f64,
-    /// How far the box reaches across, squared; negative where there is no box.
-    across_squared: f64,
+    /// r: how far from the bone's line its own vertices are; negative where there is no box.
+    radius: f64,
 }
 
 impl Boxed {
-    /// `g = clamp((s + m) / 2m, 0, 1) clamp((l + m - s) / 2m, 0, 1)`, without the factor of an open end; 0 outside
-    /// the box.
+    /// `g = clamp((s + m) / 2m, 0, 1) clamp((l + m - s) / 2m, 0, 1) clamp((2r - a) / r, 0, 1)`, without the factor of
+    /// an open end, a being how far the vertex is from the bone's line.
     pub(super) fn gradient(&self, vertex: DVec3) -> f64 {
         let (bone, margin) = (&self.bone, self.margin);
         let s = bone.projection(vertex);
-        if bone.aside_squared(vertex, s) > self.across_squared {
+        let across = 2.0 - bone.aside_squared(vertex, s).sqrt() / self.radius;
+        if self.radius < 0.0 || across <= 0.0 {
             return 0.0;
         }
         let rise = if bone.open[0] { 1.0 } else { ((s + margin) / (2.0 * margin)).clamp(0.0, 1.0) };
         let fall =
             if bone.open[1] { 1.0 } else { ((bone.length + margin - s) / (2.0 * margin)).clamp(0.0, 1.0) };
-        rise * fall
+        rise * fall * across.min(1.0)
     }
 }
 
@@ -108,10 +107,9 @@ pub(super) fn boxes(vertices: &[DVec3], bones: &[Bone], near: &[Near]) -> Vec<Bo
         .iter()
         .zip(farthest)
         .map(|(bone, farthest)| {
-            let across = farthest.map_or(MARGIN * bone.length, |squared| ROOM * squared.sqrt());
-            let across = across.max(THINNEST * bone.length);
-            let across_squared = if bone.length > 0.0 { across * across } else { -1.0 };
-            Boxed { bone: *bone, margin: MARGIN * bone.length, across_squared }
+            let radius = farthest.map_or(MARGIN * bone.length, f64::sqrt).max(THINNEST * bone.length);
+            let radius = if bone.length > 0.0 { radius } else { -1.0 };
+            Boxed { bone: *bone, margin: MARGIN * bone.length, radius }
         })
         .collect()
 }
@@ -135,9 +133,14 @@ impl Reach {
         Self { slack: Self::SLACK * size }
     }
 
-    /// The squared distance within which a bone is taken.
-    pub(super) fn squared(self, near: Near) -> f64 {
-        let distance = Self::TIMES * near.distance_squared.sqrt() + self.slack;
-        distance * distance
+    /// The part of its gradient that a bone keeps at a distance: all where it is the nearest, less the farther it
+    /// is, none from 1.5 times as far on. So no weight jumps where a bone comes within reach.
+    pub(super) fn share(self, near: Near, distance_squared: f64) -> f64 {
+        let (nearest, distance) = (near.distance_squared.sqrt(), distance_squared.sqrt());
+        if distance <= nearest {
+            return 1.0;
+        }
+        let end = Self::TIMES * nearest + self.slack;
+        ((end - distance) / (end - nearest)).max(0.0)
     }
 }

@@ -35,8 +35,8 @@ pub(super) fn nearest(vertices: &[DVec3], bones: &[Bone], near: &mut [Near], thr
     });
 }
 
-/// Of each joint the largest gradient among those of its bones that are within reach; the strongest four of these,
-/// divided by their sum. `boxes` are ordered by joint.
+/// Of each joint the largest gradient among those of its bones, less what they lose by being far; the strongest four
+/// of these, divided by their sum. `boxes` are ordered by joint.
 pub(super) fn gradients(
     vertices: &[DVec3],
     boxes: &[Boxed],
@@ -48,11 +48,12 @@ pub(super) fn gradients(
     for_each_chunk(followed, CHUNK, threads, |chunk, followed| {
         let rows = vertices[chunk * CHUNK..].iter().zip(&near[chunk * CHUNK..]);
         for (followed, (vertex, near)) in followed.iter_mut().zip(rows) {
-            let within = reach.squared(*near);
             for bones in boxes.chunk_by(|a, b| a.bone.joint == b.bone.joint) {
-                let taken = bones.iter().filter(|boxed| boxed.bone.distance_squared(*vertex) <= within);
-                let gradient = taken.map(|boxed| boxed.gradient(*vertex)).fold(0.0, f64::max);
-                followed.add(bones[0].bone.joint, gradient);
+                let shares = bones.iter().map(|boxed| {
+                    let share = reach.share(*near, boxed.bone.distance_squared(*vertex));
+                    if share > 0.0 { share * boxed.gradient(*vertex) } else { 0.0 }
+                });
+                followed.add(bones[0].bone.joint, shares.fold(0.0, f64::max));
             }
             followed.normalize();
         }

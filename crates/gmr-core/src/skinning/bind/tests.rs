@@ -84,18 +84,21 @@ impl Scene {
                         && (open[b][1] || s(**v, b) <= length(b))
                 });
                 let far = beside.map(|v| on_line(*v, b, s(*v, b))).reduce(f64::max);
-                far.map_or(0.35 * length(b), |far| 1.1 * far)
+                far.unwrap_or(0.35 * length(b)).max(1e-6 * length(b))
             })
             .collect();
         let gradient = |v: DVec3, b: usize| {
             let (s, l, m) = (s(v, b), length(b), 0.35 * length(b));
             let near = distance(v, nearest(v));
-            if on_line(v, b, s) > across[b] || distance(v, b) > 1.5 * near + slack {
+            let reach = 1.5 * near + slack;
+            if on_line(v, b, s) >= 2.0 * across[b] || distance(v, b) > reach {
                 return 0.0;
             }
+            let beside = (2.0 - on_line(v, b, s) / across[b]).min(1.0);
+            let share = if distance(v, b) > near { (reach - distance(v, b)) / (reach - near) } else { 1.0 };
             let rise = if open[b][0] { 1.0 } else { ((s + m) / (2.0 * m)).clamp(0.0, 1.0) };
             let fall = if open[b][1] { 1.0 } else { ((l + m - s) / (2.0 * m)).clamp(0.0, 1.0) };
-            rise * fall
+            rise * fall * beside * share
         };
         let four_largest = |mut row: Vec<f64>| {
             let mut order: Vec<usize> = (0..row.len()).collect();
