@@ -81,7 +81,7 @@ class _Report:
 @click.option(
     "--to",
     type=Written(),
-    help="The format to write: bvh, amc, gmr, ...; told by the suffix otherwise, and in a folder kept.",
+    help="The format to write: bvh, amc, gmr, glb, ...; told by the suffix otherwise, and in a folder kept.",
 )
 @click.option("--fps", type=Rate(), help="Resample to this rate: rotations by slerp.")
 @click.option("--unit", type=Unit(), help="Convert to this unit: m, cm, mm, in, ft, cmu or metres per unit.")

@@ -142,7 +142,7 @@ FORMATS: Final = (
     Format("C3D", (".c3d",), (b"\x02P",), "gmr.formats.c3d", "read_c3d", None, begins_at=0, holds="markers"),
     Format(
         "GLB", (".glb",), (b"glTF",), "gmr.formats.gltf", "read_gltf", "glb_of_motion",
-        options=("animation", "fps"), begins_at=0,
+        options=("animation", "fps"), begins_at=0, in_metres=True,
     ),
     Format("glTF", (".gltf",), (b"{",), "gmr.formats.gltf", "read_gltf", None, options=("animation", "fps")),
     Format("X3D", (".x3d",), (b"<?XML", b"<X3D"), "gmr.formats.x3d", None, "x3d_chunks", in_metres=True),
