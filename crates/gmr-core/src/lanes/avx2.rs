@@ -1,13 +1,13 @@
 //! AVX2: 8 frames of `f32`, 4 of `f64`.
 
 use std::arch::x86_64::{
-    __m256, __m256d, _CMP_GT_OQ, _mm_loadu_ps, _mm_storeu_ps, _mm256_add_pd, _mm256_add_ps, _mm256_castpd_ps,
-    _mm256_castps_pd, _mm256_castps128_ps256, _mm256_castps256_ps128, _mm256_cmp_pd, _mm256_cvtpd_ps,
-    _mm256_div_pd, _mm256_div_ps, _mm256_extractf128_ps, _mm256_insertf128_ps, _mm256_loadu_pd,
-    _mm256_loadu_ps, _mm256_movemask_pd, _mm256_mul_pd, _mm256_mul_ps, _mm256_permute2f128_pd,
-    _mm256_set1_pd, _mm256_set1_ps, _mm256_sqrt_pd, _mm256_sqrt_ps, _mm256_storeu_pd, _mm256_storeu_ps,
-    _mm256_sub_pd, _mm256_sub_ps, _mm256_unpackhi_pd, _mm256_unpackhi_ps, _mm256_unpacklo_pd,
-    _mm256_unpacklo_ps,
+    __m256, __m256d, _CMP_GT_OQ, _mm_loadu_ps, _mm_storeu_ps, _mm256_add_pd, _mm256_add_ps, _mm256_andnot_pd,
+    _mm256_andnot_ps, _mm256_castpd_ps, _mm256_castps_pd, _mm256_castps128_ps256, _mm256_castps256_ps128,
+    _mm256_cmp_pd, _mm256_cvtpd_ps, _mm256_div_pd, _mm256_div_ps, _mm256_extractf128_ps,
+    _mm256_insertf128_ps, _mm256_loadu_pd, _mm256_loadu_ps, _mm256_movemask_pd, _mm256_mul_pd, _mm256_mul_ps,
+    _mm256_permute2f128_pd, _mm256_set1_pd, _mm256_set1_ps, _mm256_sqrt_pd, _mm256_sqrt_ps, _mm256_storeu_pd,
+    _mm256_storeu_ps, _mm256_sub_pd, _mm256_sub_ps, _mm256_unpackhi_pd, _mm256_unpackhi_ps,
+    _mm256_unpacklo_pd, _mm256_unpacklo_ps,
 };
 
 use super::Kernel;
@@ -33,15 +33,36 @@ pub(super) unsafe fn run_f64(kernel: impl Kernel<f64>) {
 register! {
     /// Eight frames.
     F32x8 = __m256 of 8 f32, two of F64x4 beside it;
-    add _mm256_add_ps, sub _mm256_sub_ps, mul _mm256_mul_ps, div _mm256_div_ps, sqrt _mm256_sqrt_ps,
-    splat _mm256_set1_ps, read _mm256_loadu_ps, write _mm256_storeu_ps, load load_f32, store store_f32, narrow narrow,
+    add _mm256_add_ps, sub _mm256_sub_ps, mul _mm256_mul_ps, div _mm256_div_ps, sqrt _mm256_sqrt_ps, abs abs_f32,
+    splat _mm256_set1_ps, read _mm256_loadu_ps, write _mm256_storeu_ps, load load_f32, store store_f32,
+    scatter scatter, narrow narrow,
 }
 
 register! {
     /// Four frames.
     F64x4 = __m256d of 4 f64;
-    add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd, sqrt _mm256_sqrt_pd,
+    add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd, sqrt _mm256_sqrt_pd, abs abs_f64,
     splat _mm256_set1_pd, read _mm256_loadu_pd, write _mm256_storeu_pd, load load_f64, store store_f64, any_above any_above,
+}
+
+/// Without the sign bit.
+///
+/// # Safety
+/// The machine must have AVX2.
+#[inline(always)]
+unsafe fn abs_f32(lanes: __m256) -> __m256 {
+    // SAFETY: the caller's.
+    unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), lanes) }
+}
+
+/// Without the sign bit.
+///
+/// # Safety
+/// The machine must have AVX2.
+#[inline(always)]
+unsafe fn abs_f64(lanes: __m256d) -> __m256d {
+    // SAFETY: the caller's.
+    unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), lanes) }
 }
 
 /// Four columns of eight rows.
@@ -73,6 +94,22 @@ unsafe fn store_f32(columns: [__m256; 4], start: *mut f32, stride: usize) {
         store_two(b, odd, stride);
         store_two(c, even.add(2 * stride), stride);
         store_two(d, odd.add(2 * stride), stride);
+    }
+}
+
+/// [`store_f32`] to the rows of four numbers that `rows` names.
+///
+/// # Safety
+/// The machine must have AVX2; eight rows must be named, and writeable.
+#[inline(always)]
+unsafe fn scatter(columns: [__m256; 4], start: *mut f32, rows: *const u16) {
+    // SAFETY: the caller's.
+    unsafe {
+        for (lane, two) in transpose_halves(columns).into_iter().enumerate() {
+            let (first, second) = (usize::from(*rows.add(lane)), usize::from(*rows.add(lane + 4)));
+            _mm_storeu_ps(start.add(4 * first), _mm256_castps256_ps128(two));
+            _mm_storeu_ps(start.add(4 * second), _mm256_extractf128_ps::<1>(two));
+        }
     }
 }
 

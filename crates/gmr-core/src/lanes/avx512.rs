@@ -2,13 +2,13 @@
 
 use std::arch::x86_64::{
     __m512, __m512d, _CMP_GT_OQ, _mm_loadu_ps, _mm_storeu_ps, _mm256_loadu_pd, _mm256_storeu_pd,
-    _mm512_add_pd, _mm512_add_ps, _mm512_castpd_ps, _mm512_castpd256_pd512, _mm512_castps_pd,
-    _mm512_castps128_ps512, _mm512_castps256_ps512, _mm512_cmp_pd_mask, _mm512_cvtpd_ps, _mm512_div_pd,
-    _mm512_div_ps, _mm512_extractf32x4_ps, _mm512_extractf64x4_pd, _mm512_insertf32x4, _mm512_insertf32x8,
-    _mm512_insertf64x4, _mm512_loadu_pd, _mm512_loadu_ps, _mm512_mul_pd, _mm512_mul_ps, _mm512_set1_pd,
-    _mm512_set1_ps, _mm512_shuffle_f64x2, _mm512_sqrt_pd, _mm512_sqrt_ps, _mm512_storeu_pd, _mm512_storeu_ps,
-    _mm512_sub_pd, _mm512_sub_ps, _mm512_unpackhi_pd, _mm512_unpackhi_ps, _mm512_unpacklo_pd,
-    _mm512_unpacklo_ps,
+    _mm512_abs_pd, _mm512_abs_ps, _mm512_add_pd, _mm512_add_ps, _mm512_castpd_ps, _mm512_castpd256_pd512,
+    _mm512_castps_pd, _mm512_castps128_ps512, _mm512_castps256_ps512, _mm512_castps512_ps128,
+    _mm512_cmp_pd_mask, _mm512_cvtpd_ps, _mm512_div_pd, _mm512_div_ps, _mm512_extractf32x4_ps,
+    _mm512_extractf64x4_pd, _mm512_insertf32x4, _mm512_insertf32x8, _mm512_insertf64x4, _mm512_loadu_pd,
+    _mm512_loadu_ps, _mm512_mul_pd, _mm512_mul_ps, _mm512_set1_pd, _mm512_set1_ps, _mm512_shuffle_f64x2,
+    _mm512_sqrt_pd, _mm512_sqrt_ps, _mm512_storeu_pd, _mm512_storeu_ps, _mm512_sub_pd, _mm512_sub_ps,
+    _mm512_unpackhi_pd, _mm512_unpackhi_ps, _mm512_unpacklo_pd, _mm512_unpacklo_ps,
 };
 
 use super::Kernel;
@@ -34,14 +34,15 @@ pub(super) unsafe fn run_f64(kernel: impl Kernel<f64>) {
 register! {
     /// Sixteen frames.
     F32x16 = __m512 of 16 f32, two of F64x8 beside it;
-    add _mm512_add_ps, sub _mm512_sub_ps, mul _mm512_mul_ps, div _mm512_div_ps, sqrt _mm512_sqrt_ps,
-    splat _mm512_set1_ps, read _mm512_loadu_ps, write _mm512_storeu_ps, load load_f32, store store_f32, narrow narrow,
+    add _mm512_add_ps, sub _mm512_sub_ps, mul _mm512_mul_ps, div _mm512_div_ps, sqrt _mm512_sqrt_ps, abs _mm512_abs_ps,
+    splat _mm512_set1_ps, read _mm512_loadu_ps, write _mm512_storeu_ps, load load_f32, store store_f32,
+    scatter scatter, narrow narrow,
 }
 
 register! {
     /// Eight frames.
     F64x8 = __m512d of 8 f64;
-    add _mm512_add_pd, sub _mm512_sub_pd, mul _mm512_mul_pd, div _mm512_div_pd, sqrt _mm512_sqrt_pd,
+    add _mm512_add_pd, sub _mm512_sub_pd, mul _mm512_mul_pd, div _mm512_div_pd, sqrt _mm512_sqrt_pd, abs _mm512_abs_pd,
     splat _mm512_set1_pd, read _mm512_loadu_pd, write _mm512_storeu_pd, load load_f64, store store_f64, any_above any_above,
 }
 
@@ -74,6 +75,24 @@ unsafe fn store_f32(columns: [__m512; 4], start: *mut f32, stride: usize) {
         store_quad(b, odd, stride);
         store_quad(c, even.add(2 * stride), stride);
         store_quad(d, odd.add(2 * stride), stride);
+    }
+}
+
+/// [`store_f32`] to the rows of four numbers that `rows` names.
+///
+/// # Safety
+/// The machine must have AVX-512 F and DQ; sixteen rows must be named, and writeable.
+#[inline(always)]
+unsafe fn scatter(columns: [__m512; 4], start: *mut f32, rows: *const u16) {
+    // SAFETY: the caller's.
+    unsafe {
+        for (lane, quad) in transpose_quarters(columns).into_iter().enumerate() {
+            let row = [0, 4, 8, 12].map(|further| start.add(4 * usize::from(*rows.add(lane + further))));
+            _mm_storeu_ps(row[0], _mm512_castps512_ps128(quad));
+            _mm_storeu_ps(row[1], _mm512_extractf32x4_ps::<1>(quad));
+            _mm_storeu_ps(row[2], _mm512_extractf32x4_ps::<2>(quad));
+            _mm_storeu_ps(row[3], _mm512_extractf32x4_ps::<3>(quad));
+        }
     }
 }
 

@@ -47,6 +47,10 @@ pub trait Lanes:
     #[must_use]
     fn sqrt(self) -> Self;
 
+    /// Every lane without its sign.
+    #[must_use]
+    fn abs(self) -> Self;
+
     /// The first [`Lanes::WIDTH`] numbers of `source`, one in each lane.
     fn load(source: &[Self::Real]) -> Self;
 
@@ -58,6 +62,17 @@ pub trait Lanes:
 
     /// The inverse of [`Lanes::load_columns`].
     fn store_columns(columns: [Self; 4], target: &mut [Self::Real], stride: usize);
+
+    /// As [`Lanes::store_columns`], but each lane's four numbers become the row of `target` that `rows` names.
+    /// Where two lanes name one row, the row may be either's.
+    #[inline(always)]
+    fn scatter_columns(columns: [Self; 4], target: &mut [[Self::Real; 4]], rows: &[u16]) {
+        let mut fours = [[Self::Real::ZERO; 4]; 16];
+        Self::store_columns(columns, fours.as_flattened_mut(), 4);
+        for (four, &row) in fours[..Self::WIDTH].iter().zip(&rows[..Self::WIDTH]) {
+            target[usize::from(row)] = *four;
+        }
+    }
 
     /// [`Lanes::load_columns`] of `f64` rows.
     fn load_doubles(source: &[f64], stride: usize) -> [Self::Doubles; 4];

@@ -1,10 +1,10 @@
 //! NEON: 4 frames of `f32`, 2 of `f64`.
 
 use std::arch::aarch64::{
-    float32x4_t, float64x2_t, vaddq_f32, vaddq_f64, vcgtq_f64, vcombine_f32, vcvt_f32_f64, vdivq_f32,
-    vdivq_f64, vdupq_n_f32, vdupq_n_f64, vgetq_lane_u64, vld1q_f32, vld1q_f64, vmulq_f32, vmulq_f64,
-    vreinterpretq_f32_f64, vreinterpretq_f64_f32, vsqrtq_f32, vsqrtq_f64, vst1q_f32, vst1q_f64, vsubq_f32,
-    vsubq_f64, vtrn1q_f32, vtrn1q_f64, vtrn2q_f32, vtrn2q_f64,
+    float32x4_t, float64x2_t, vabsq_f32, vabsq_f64, vaddq_f32, vaddq_f64, vcgtq_f64, vcombine_f32,
+    vcvt_f32_f64, vdivq_f32, vdivq_f64, vdupq_n_f32, vdupq_n_f64, vgetq_lane_u64, vld1q_f32, vld1q_f64,
+    vmulq_f32, vmulq_f64, vreinterpretq_f32_f64, vreinterpretq_f64_f32, vsqrtq_f32, vsqrtq_f64, vst1q_f32,
+    vst1q_f64, vsubq_f32, vsubq_f64, vtrn1q_f32, vtrn1q_f64, vtrn2q_f32, vtrn2q_f64,
 };
 
 use super::Kernel;
@@ -22,14 +22,15 @@ pub(super) fn run_f64(kernel: impl Kernel<f64>) {
 register! {
     /// Four frames.
     F32x4 = float32x4_t of 4 f32, two of F64x2 beside it;
-    add vaddq_f32, sub vsubq_f32, mul vmulq_f32, div vdivq_f32, sqrt vsqrtq_f32, splat vdupq_n_f32,
-    read vld1q_f32, write vst1q_f32, load load_f32, store store_f32, narrow narrow,
+    add vaddq_f32, sub vsubq_f32, mul vmulq_f32, div vdivq_f32, sqrt vsqrtq_f32, abs vabsq_f32, splat vdupq_n_f32,
+    read vld1q_f32, write vst1q_f32, load load_f32, store store_f32,
+    scatter scatter, narrow narrow,
 }
 
 register! {
     /// Two frames.
     F64x2 = float64x2_t of 2 f64;
-    add vaddq_f64, sub vsubq_f64, mul vmulq_f64, div vdivq_f64, sqrt vsqrtq_f64, splat vdupq_n_f64,
+    add vaddq_f64, sub vsubq_f64, mul vmulq_f64, div vdivq_f64, sqrt vsqrtq_f64, abs vabsq_f64, splat vdupq_n_f64,
     read vld1q_f64, write vst1q_f64, load load_f64, store store_f64, any_above any_above,
 }
 
@@ -61,6 +62,20 @@ unsafe fn store_f32(columns: [float32x4_t; 4], start: *mut f32, stride: usize) {
         vst1q_f32(start.add(stride), b);
         vst1q_f32(start.add(2 * stride), c);
         vst1q_f32(start.add(3 * stride), d);
+    }
+}
+
+/// [`store_f32`] to the rows of four numbers that `rows` names.
+///
+/// # Safety
+/// Four rows must be named, and writeable.
+#[inline(always)]
+unsafe fn scatter(columns: [float32x4_t; 4], start: *mut f32, rows: *const u16) {
+    // SAFETY: the caller's.
+    unsafe {
+        for (lane, one) in transpose(columns).into_iter().enumerate() {
+            vst1q_f32(start.add(4 * usize::from(*rows.add(lane))), one);
+        }
     }
 }
 

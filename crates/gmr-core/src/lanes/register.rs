@@ -6,6 +6,7 @@
 //! - `read(start)` and `write(start, register)`: consecutive numbers, one to a lane;
 //! - `load(start, stride)` and `store(columns, start, stride)`: [`Lanes::load_columns`](super::Lanes::load_columns)
 //!   and its inverse, of rows that are known to lie inside the array;
+//! - `scatter(columns, start, rows)`: the same to rows of four numbers, named for each lane;
 //! - `narrow(first, second)`: the `f64` of the first half of the lanes and of the second, as `f32`;
 //! - `any_above(lanes, limit)`: whether a lane is greater than the same lane of `limit`.
 
@@ -13,8 +14,9 @@
 macro_rules! register {
     (
         $(#[$doc:meta])* $name:ident = $raw:ident of $width:literal f32, two of $doubles:ident beside it;
-        add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, sqrt $sqrt:ident, splat $splat:ident,
-        read $read:ident, write $write:ident, load $load:ident, store $store:ident, narrow $narrow:ident,
+        add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, sqrt $sqrt:ident, abs $abs:ident,
+        splat $splat:ident, read $read:ident, write $write:ident, load $load:ident, store $store:ident,
+        scatter $scatter:ident, narrow $narrow:ident,
     ) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
@@ -27,7 +29,17 @@ macro_rules! register {
             type Doubles = $crate::lanes::pair::Pair<$doubles>;
             const WIDTH: usize = $width;
 
-            register!(@lanes $name, f32, $width, $sqrt, $splat, $read, $write, $load, $store);
+            register!(@lanes $name, f32, $width, $sqrt, $abs, $splat, $read, $write, $load, $store);
+
+            #[inline(always)]
+            fn scatter_columns([x, y, z, w]: [Self; 4], target: &mut [[f32; 4]], rows: &[u16]) {
+                let rows = &rows[..$width];
+                let highest = rows.iter().fold(0, |highest, &row| if row > highest { row } else { highest });
+                assert!(usize::from(highest) < target.len(), "rows outside the array");
+                // SAFETY: registers exist only where `dispatch` has found the instruction set; so many rows are
+                // named, all of them inside `target`, as just checked.
+                unsafe { $scatter([x.0, y.0, z.0, w.0], target.as_mut_ptr().cast(), rows.as_ptr()) }
+            }
 
             #[inline(always)]
             fn load_doubles(source: &[f64], stride: usize) -> [Self::Doubles; 4] {
@@ -43,8 +55,8 @@ macro_rules! register {
     };
     (
         $(#[$doc:meta])* $name:ident = $raw:ident of $width:literal f64;
-        add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, sqrt $sqrt:ident, splat $splat:ident,
-        read $read:ident, write $write:ident, load $load:ident, store $store:ident, any_above $any_above:ident,
+        add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, sqrt $sqrt:ident, abs $abs:ident,
+        splat $splat:ident, read $read:ident, write $write:ident, load $load:ident, store $store:ident, any_above $any_above:ident,
     ) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
@@ -57,7 +69,7 @@ macro_rules! register {
             type Doubles = Self;
             const WIDTH: usize = $width;
 
-            register!(@lanes $name, f64, $width, $sqrt, $splat, $read, $write, $load, $store);
+            register!(@lanes $name, f64, $width, $sqrt, $abs, $splat, $read, $write, $load, $store);
 
             #[inline(always)]
             fn load_doubles(source: &[f64], stride: usize) -> [Self; 4] {
@@ -92,7 +104,7 @@ macro_rules! register {
             }
         }
     };
-    (@lanes $name:ident, $real:ident, $width:literal, $sqrt:ident, $splat:ident, $read:ident, $write:ident, $load:ident, $store:ident) => {
+    (@lanes $name:ident, $real:ident, $width:literal, $sqrt:ident, $abs:ident, $splat:ident, $read:ident, $write:ident, $load:ident, $store:ident) => {
         #[inline(always)]
         fn splat(value: $real) -> Self {
             // SAFETY: registers exist only where `dispatch` has found the instruction set.
@@ -103,6 +115,12 @@ macro_rules! register {
         fn sqrt(self) -> Self {
             // SAFETY: as for `splat`.
             Self(unsafe { $sqrt(self.0) })
+        }
+
+        #[inline(always)]
+        fn abs(self) -> Self {
+            // SAFETY: as for `splat`.
+            Self(unsafe { $abs(self.0) })
         }
 
         #[inline(always)]

@@ -17,6 +17,11 @@ macro_rules! plain_number {
         }
 
         #[inline(always)]
+        fn abs(self) -> $real {
+            <$real>::abs(self)
+        }
+
+        #[inline(always)]
         fn load(source: &[$real]) -> $real {
             source[0]
         }

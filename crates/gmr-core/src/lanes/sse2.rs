@@ -1,10 +1,10 @@
 //! SSE2: 4 frames of `f32`, 2 of `f64`.
 
 use std::arch::x86_64::{
-    __m128, __m128d, _mm_add_pd, _mm_add_ps, _mm_cmpgt_pd, _mm_cvtpd_ps, _mm_div_pd, _mm_div_ps,
-    _mm_loadu_pd, _mm_loadu_ps, _mm_movehl_ps, _mm_movelh_ps, _mm_movemask_pd, _mm_mul_pd, _mm_mul_ps,
-    _mm_set1_pd, _mm_set1_ps, _mm_sqrt_pd, _mm_sqrt_ps, _mm_storeu_pd, _mm_storeu_ps, _mm_sub_pd, _mm_sub_ps,
-    _mm_unpackhi_pd, _mm_unpackhi_ps, _mm_unpacklo_pd, _mm_unpacklo_ps,
+    __m128, __m128d, _mm_add_pd, _mm_add_ps, _mm_andnot_pd, _mm_andnot_ps, _mm_cmpgt_pd, _mm_cvtpd_ps,
+    _mm_div_pd, _mm_div_ps, _mm_loadu_pd, _mm_loadu_ps, _mm_movehl_ps, _mm_movelh_ps, _mm_movemask_pd,
+    _mm_mul_pd, _mm_mul_ps, _mm_set1_pd, _mm_set1_ps, _mm_sqrt_pd, _mm_sqrt_ps, _mm_storeu_pd, _mm_storeu_ps,
+    _mm_sub_pd, _mm_sub_ps, _mm_unpackhi_pd, _mm_unpackhi_ps, _mm_unpacklo_pd, _mm_unpacklo_ps,
 };
 
 use super::Kernel;
@@ -22,15 +22,36 @@ pub(super) fn run_f64(kernel: impl Kernel<f64>) {
 register! {
     /// Four frames.
     F32x4 = __m128 of 4 f32, two of F64x2 beside it;
-    add _mm_add_ps, sub _mm_sub_ps, mul _mm_mul_ps, div _mm_div_ps, sqrt _mm_sqrt_ps, splat _mm_set1_ps,
-    read _mm_loadu_ps, write _mm_storeu_ps, load load_f32, store store_f32, narrow narrow,
+    add _mm_add_ps, sub _mm_sub_ps, mul _mm_mul_ps, div _mm_div_ps, sqrt _mm_sqrt_ps, abs abs_f32, splat _mm_set1_ps,
+    read _mm_loadu_ps, write _mm_storeu_ps, load load_f32, store store_f32,
+    scatter scatter, narrow narrow,
 }
 
 register! {
     /// Two frames.
     F64x2 = __m128d of 2 f64;
-    add _mm_add_pd, sub _mm_sub_pd, mul _mm_mul_pd, div _mm_div_pd, sqrt _mm_sqrt_pd, splat _mm_set1_pd,
+    add _mm_add_pd, sub _mm_sub_pd, mul _mm_mul_pd, div _mm_div_pd, sqrt _mm_sqrt_pd, abs abs_f64, splat _mm_set1_pd,
     read _mm_loadu_pd, write _mm_storeu_pd, load load_f64, store store_f64, any_above any_above,
+}
+
+/// Without the sign bit.
+///
+/// # Safety
+/// None beyond SSE2.
+#[inline(always)]
+unsafe fn abs_f32(lanes: __m128) -> __m128 {
+    // SAFETY: the caller's.
+    unsafe { _mm_andnot_ps(_mm_set1_ps(-0.0), lanes) }
+}
+
+/// Without the sign bit.
+///
+/// # Safety
+/// None beyond SSE2.
+#[inline(always)]
+unsafe fn abs_f64(lanes: __m128d) -> __m128d {
+    // SAFETY: the caller's.
+    unsafe { _mm_andnot_pd(_mm_set1_pd(-0.0), lanes) }
 }
 
 /// Four columns of four rows.
@@ -60,6 +81,20 @@ unsafe fn store_f32(columns: [__m128; 4], start: *mut f32, stride: usize) {
         _mm_storeu_ps(start.add(stride), b);
         _mm_storeu_ps(start.add(2 * stride), c);
         _mm_storeu_ps(start.add(3 * stride), d);
+    }
+}
+
+/// [`store_f32`] to the rows of four numbers that `rows` names.
+///
+/// # Safety
+/// Four rows must be named, and writeable.
+#[inline(always)]
+unsafe fn scatter(columns: [__m128; 4], start: *mut f32, rows: *const u16) {
+    // SAFETY: the caller's.
+    unsafe {
+        for (lane, one) in transpose(columns).into_iter().enumerate() {
+            _mm_storeu_ps(start.add(4 * usize::from(*rows.add(lane))), one);
+        }
     }
 }
 

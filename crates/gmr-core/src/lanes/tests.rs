@@ -58,6 +58,56 @@ fn every_instruction_set_loads_stores_and_computes_as_plain_numbers_do() {
     }
 }
 
+/// What each number of a register is without its sign, and where rows go that are named.
+struct Scattered<'a, T> {
+    source: &'a [T],
+    rows: &'a [u16],
+    target: &'a mut [[T; 4]],
+}
+
+impl<T: Real> Kernel<T> for Scattered<'_, T> {
+    #[inline(always)]
+    fn run<L: Lanes<Real = T>>(self) {
+        for start in (0..16).step_by(L::WIDTH) {
+            let [x, y, z, w] = L::load_columns(&self.source[4 * start..], 4);
+            L::scatter_columns([x, y.abs(), z, w], self.target, &self.rows[start..]);
+        }
+    }
+}
+
+fn scattered<T: Real>(isa: Isa, rows: &[u16]) -> Vec<[T; 4]> {
+    let source: Vec<T> = (0..64).map(|k| T::from_f64(f64::from(k) - 31.5)).collect();
+    let mut target = vec![[T::ZERO; 4]; 20];
+    T::dispatch(isa, Scattered { source: &source, rows, target: &mut target });
+    target
+}
+
+#[test]
+fn rows_go_where_they_are_named_and_numbers_lose_their_sign() {
+    let rows: [u16; 16] = [3, 1, 19, 0, 7, 6, 18, 9, 2, 4, 5, 17, 12, 11, 10, 8];
+    for isa in Isa::available() {
+        let (found, doubles) = (scattered::<f32>(isa, &rows), scattered::<f64>(isa, &rows));
+        for (lane, &row) in rows.iter().enumerate() {
+            let first = 4.0 * lane as f32 - 31.5;
+            let expected = [first, (first + 1.0).abs(), first + 2.0, first + 3.0];
+            assert_eq!(found[usize::from(row)], expected, "{isa}");
+            assert_eq!(doubles[usize::from(row)], expected.map(f64::from), "{isa}");
+        }
+        assert_eq!(found[13..17], [[0.0; 4]; 4], "{isa}");
+    }
+}
+
+#[test]
+fn rows_that_are_not_there_are_never_written() {
+    for isa in Isa::available() {
+        for lane in 0..16 {
+            let mut rows = [0; 16];
+            rows[lane] = 20;
+            assert!(std::panic::catch_unwind(|| scattered::<f32>(isa, &rows)).is_err(), "{isa}, lane {lane}");
+        }
+    }
+}
+
 struct Above<'a>(usize, f64, &'a mut bool);
 
 impl Kernel<f32> for Above<'_> {

@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
+use super::arrangement::{Run, WINDOW};
 use super::bones::{self, Bones};
+use super::skin::Points;
 use super::{Skin, SkinError, block, scalar};
 use crate::Isa;
 use crate::error::ShapeError;
@@ -57,8 +59,9 @@ pub struct Blended<'a> {
 /// Frames whose bones are made ready at a time: the vertices of a tile meet all of them while they are near.
 const FRAMES_PER_PIECE: usize = 16;
 
-/// Vertices that a thread takes at a time.
-const VERTICES_PER_PIECE: usize = 1 << 15;
+/// Windows of vertices that a thread takes at a time.
+const WINDOWS_PER_PIECE: usize = 8;
+const VERTICES_PER_PIECE: usize = WINDOWS_PER_PIECE * WINDOW;
 
 /// Computes positions and, where there is room for them, normals.
 ///
@@ -80,8 +83,8 @@ pub fn blend_on(isa: Isa, job: &Blend<'_>, out: Blended<'_>) -> Result<(), SkinE
     if row == 0 {
         return Ok(());
     }
-    let padded_centers = match job.method {
-        Method::Centers(centers) => super::skin::padded_rows(centers, job.skin.positions.len() / 3),
+    let centers = match job.method {
+        Method::Centers(centers) => job.skin.arranged(centers),
         _ => vec![],
     };
     let is_large = cache::is_large(out.positions);
@@ -92,8 +95,8 @@ pub fn blend_on(isa: Isa, job: &Blend<'_>, out: Blended<'_>) -> Result<(), SkinE
     for_each_piece(job.frame_count.div_ceil(FRAMES_PER_PIECE) * ranges, job.threads, |index| {
         let (group, range) = (index / ranges, index % ranges);
         let frames = group * FRAMES_PER_PIECE..job.frame_count.min((group + 1) * FRAMES_PER_PIECE);
-        let start = range * VERTICES_PER_PIECE;
-        let vertices = start..job.skin.vertex_count.min(start + VERTICES_PER_PIECE);
+        let windows = range * WINDOWS_PER_PIECE;
+        let windows = windows..job.skin.arrangement.windows.len().min(windows + WINDOWS_PER_PIECE);
         let mut frames: Vec<Frame<'_>> = frames
             .map(|frame| Frame {
                 bones: Bones::new(
@@ -105,10 +108,10 @@ pub fn blend_on(isa: Isa, job: &Blend<'_>, out: Blended<'_>) -> Result<(), SkinE
                 normals: take(&normals, frame * ranges + range),
             })
             .collect();
-        let work = Work { skin: job.skin, method: job.method, centers: &padded_centers, vertices, is_large };
+        let work = Work { skin: job.skin, method: job.method, centers: &centers, windows, is_large };
         match isa {
             Isa::Scalar => scalar::run(&work, &mut frames),
-            _ => f32::dispatch(isa, block::Tiles { work: &work, frames: &mut frames }),
+            _ => f32::dispatch(isa, block::Windows { work: &work, frames: &mut frames }),
         }
     });
     Ok(())
@@ -118,11 +121,22 @@ pub fn blend_on(isa: Isa, job: &Blend<'_>, out: Blended<'_>) -> Result<(), SkinE
 pub(super) struct Work<'a> {
     pub(super) skin: &'a Skin,
     pub(super) method: Method<'a>,
-    /// (V, 3), padded, where the method has any.
-    pub(super) centers: &'a [f32],
-    pub(super) vertices: Range<usize>,
+    /// Of each block, where the method has any.
+    pub(super) centers: &'a [Points],
+    pub(super) windows: Range<usize>,
     /// Whether the answer for all frames outgrows the caches.
     pub(super) is_large: bool,
+}
+
+impl Work<'_> {
+    /// The first vertex and the runs of each window.
+    pub(super) fn windows(&self) -> impl Iterator<Item = (usize, &[Run])> {
+        self.skin.windows().skip(self.windows.start).take(self.windows.len())
+    }
+
+    pub(super) fn first_vertex(&self) -> usize {
+        self.windows.start * WINDOW
+    }
 }
 
 /// A frame's bones, and room for the vertices of the work.

@@ -1,95 +1,92 @@
 //! As many vertices at once as a register holds; the same numbers as [`super::scalar`].
 //!
-//! The joints' rows of a vertex are summed along the row, then the sums of a block of vertices are turned so that a
-//! register holds one number of each vertex. A tile of vertices meets all frames of the piece while it is near, and
-//! its answer goes out in one run.
+//! A window of vertices meets all frames of the piece while it is near. Its answers come run by run and are put down
+//! in the caller's order, from where they go out one after the other.
 
-use std::marker::PhantomData;
-use std::ops::Range;
-
+use super::arrangement::{Arrangement, Follows, Run, WIDEST, WINDOW};
 use super::blend::{Frame, Hemisphere, Method, Work};
-use super::bones::{Bones, Row};
-use super::formulas::{Matrix, add, move_by, subtract, transform, transform_normal, turn_by};
-use super::skin::{FEW, Skin};
+use super::bones::Bones;
+use super::formulas::{add, move_by, subtract, transform, transform_normal, turn_by};
+use super::skin::{Points, Skin, Wide};
+use super::sums::{At, Each, Influences, MANY, Rows, Same, dual_quaternion, matrix};
 use crate::lanes::{Kernel, Lanes, cache};
-use crate::rotation::dot;
-
-/// Vertices whose answers are gathered before they go out: a whole number of blocks of every instruction set.
-const TILE: usize = 256;
-
-/// The most lanes that a register has.
-const WIDEST: usize = 16;
 
 /// The vertices of `work`, in each of some frames.
-pub(super) struct Tiles<'a, 'b> {
+pub(super) struct Windows<'a, 'b> {
     pub(super) work: &'a Work<'b>,
     pub(super) frames: &'a mut [Frame<'b>],
 }
 
-impl Kernel<f32> for Tiles<'_, '_> {
+impl Kernel<f32> for Windows<'_, '_> {
     #[inline(always)]
     fn run<L: Lanes<Real = f32>>(self) {
-        let few = self.work.skin.influence_count == FEW;
-        match (self.work.method, few) {
-            (Method::Linear, true) => each_tile::<L, Linear, FEW>(self),
-            (Method::Linear, false) => each_tile::<L, Linear, MANY>(self),
-            (Method::DualQuaternion(Hemisphere::Pivot), true) => {
-                each_tile::<L, DualQuaternion<Pivot>, FEW>(self)
-            }
-            (Method::DualQuaternion(Hemisphere::Pivot), false) => {
-                each_tile::<L, DualQuaternion<Pivot>, MANY>(self)
-            }
-            (Method::DualQuaternion(Hemisphere::Running), true) => {
-                each_tile::<L, DualQuaternion<Running>, FEW>(self)
-            }
-            (Method::DualQuaternion(Hemisphere::Running), false) => {
-                each_tile::<L, DualQuaternion<Running>, MANY>(self)
-            }
-            (Method::Centers(_), true) => each_tile::<L, Centers, FEW>(self),
-            (Method::Centers(_), false) => each_tile::<L, Centers, MANY>(self),
+        match self.work.method {
+            Method::Linear => each_window::<L, Linear>(self),
+            Method::DualQuaternion(Hemisphere::Pivot) => each_window::<L, Pivot>(self),
+            Method::DualQuaternion(Hemisphere::Running) => each_window::<L, Running>(self),
+            Method::Centers(_) => each_window::<L, Centers>(self),
         }
     }
 }
 
-/// Stands for a number of influences that is known at run time only; fewer than [`FEW`] there never are.
-const MANY: usize = 1;
+/// Vertices whose answers are streamed at a time.
+const PACK: usize = 256;
 
-/// What a thread computes in before it goes out.
-struct Room<'a> {
-    /// The blended numbers of each vertex of a block.
-    sums: &'a mut [[f32; 16]],
-    /// Four numbers of each vertex of a block.
-    fours: [f32; 4 * WIDEST],
-    /// A tile, and one number more, so that four can be written for any vertex.
-    positions: [f32; 3 * TILE + 1],
-    normals: [f32; 3 * TILE + 1],
+/// The most usual number of influences.
+const FEW: usize = 4;
+
+/// What a thread computes in before it goes out. All on the heap, for of what lies on the stack the compiler knows
+/// that more can be read than is asked for: it then reads across numbers that were written apart, which the processor
+/// must wait for.
+struct Room {
+    answers: Answers,
+    /// Some of the answers, three numbers each.
+    packed: Vec<f32>,
+    same: Same,
+    /// The blended numbers of each vertex of a register.
+    sums: Box<[[f32; 16]; WIDEST]>,
+    /// The weights of a block, with their signs.
+    signed: Vec<Wide>,
+}
+
+/// Those of a window, three numbers and one to spare each.
+struct Answers {
+    positions: Vec<[f32; 4]>,
+    normals: Vec<[f32; 4]>,
+}
+
+impl Room {
+    fn new(skin: &Skin, normals: bool) -> Self {
+        let most = skin.arrangement.runs.iter().map(|run| run.influence_count).max().unwrap_or(0);
+        Self {
+            answers: Answers {
+                positions: vec![[0.0; 4]; WINDOW],
+                normals: vec![[0.0; 4]; if normals { WINDOW } else { 0 }],
+            },
+            packed: vec![0.0; 3 * PACK],
+            same: Same::default(),
+            sums: Box::new([[0.0; 16]; WIDEST]),
+            signed: vec![Wide([0.0; WIDEST]); most],
+        }
+    }
 }
 
 #[inline(always)]
-fn each_tile<L: Lanes<Real = f32>, M: Blending, const K: usize>(tiles: Tiles<'_, '_>) {
-    let Tiles { work, frames } = tiles;
-    // On the heap, for of what lies on the stack the compiler knows that more can be read than is asked for: it then
-    // reads across numbers that were written apart, which the processor must wait for.
-    let mut sums = vec![0.0_f32; 16 * (WIDEST + 1)];
-    let line = sums.as_ptr().align_offset(cache::LINE);
-    let sums = sums[line..].as_chunks_mut().0;
-    let mut room =
-        Room { sums, fours: [0.0; 4 * WIDEST], positions: [0.0; 3 * TILE + 1], normals: [0.0; 3 * TILE + 1] };
-    for start in work.vertices.clone().step_by(TILE) {
-        let tile = start..work.vertices.end.min(start + TILE);
-        let place = 3 * (start - work.vertices.start)..3 * (tile.end - work.vertices.start);
-        for frame in &mut *frames {
-            let bones = &frame.bones;
-            match (&mut frame.normals, bones.residual.is_empty()) {
-                (None, true) => blend_tile::<L, M, K, false, false>(work, bones, &tile, &mut room),
-                (None, false) => blend_tile::<L, M, K, false, true>(work, bones, &tile, &mut room),
-                (Some(_), true) => blend_tile::<L, M, K, true, false>(work, bones, &tile, &mut room),
-                (Some(_), false) => blend_tile::<L, M, K, true, true>(work, bones, &tile, &mut room),
+fn each_window<L: Lanes<Real = f32>, M: Blending>(windows: Windows<'_, '_>) {
+    let Windows { work, frames } = windows;
+    let mut room = Room::new(work.skin, frames.iter().any(|frame| frame.normals.is_some()));
+    for (start, runs) in work.windows() {
+        let end = work.skin.vertex_count.min(start + WINDOW);
+        let place = 3 * (start - work.first_vertex())..3 * (end - work.first_vertex());
+        for Frame { bones, positions, normals } in &mut *frames {
+            match normals {
+                None => blend_runs::<L, M, false>(work, bones, start, runs, &mut room),
+                Some(normals) => {
+                    blend_runs::<L, M, true>(work, bones, start, runs, &mut room);
+                    put(&room.answers.normals, &mut room.packed, &mut normals[place.clone()], work.is_large);
+                }
             }
-            put(&room.positions, &mut frame.positions[place.clone()], work.is_large);
-            if let Some(out) = &mut frame.normals {
-                put(&room.normals, &mut out[place.clone()], work.is_large);
-            }
+            put(&room.answers.positions, &mut room.packed, &mut positions[place.clone()], work.is_large);
         }
     }
     if work.is_large {
@@ -97,267 +94,242 @@ fn each_tile<L: Lanes<Real = f32>, M: Blending, const K: usize>(tiles: Tiles<'_,
     }
 }
 
-fn put(answer: &[f32], out: &mut [f32], is_large: bool) {
-    let answer = &answer[..out.len()];
-    if is_large { cache::stream(answer, out) } else { out.copy_from_slice(answer) }
+/// Sends the first answers out, as many as there is room for.
+fn put(answers: &[[f32; 4]], packed: &mut [f32], out: &mut [f32], is_large: bool) {
+    if !is_large {
+        return pack(answers, out);
+    }
+    for (answers, out) in answers.chunks(PACK).zip(out.chunks_mut(3 * PACK)) {
+        let packed = &mut packed[..out.len()];
+        pack(answers, packed);
+        cache::stream(packed, out);
+    }
+}
+
+/// The first three numbers of each answer, one after the other.
+fn pack(answers: &[[f32; 4]], out: &mut [f32]) {
+    let (fours, twelves) = (answers.as_chunks::<4>().0, out.as_chunks_mut::<12>());
+    for ([a, b, c, d], out) in fours.iter().zip(twelves.0) {
+        *out = [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], d[0], d[1], d[2]];
+    }
+    let done = out.len() / 12 * 4;
+    for (answer, out) in answers[done..].iter().zip(out[3 * done..].as_chunks_mut::<3>().0) {
+        *out = [answer[0], answer[1], answer[2]];
+    }
 }
 
 #[inline(always)]
-fn blend_tile<
-    L: Lanes<Real = f32>,
-    M: Blending,
-    const K: usize,
-    const NORMALS: bool,
-    const STRETCHED: bool,
->(
+fn blend_runs<L: Lanes<Real = f32>, M: Blending, const NORMALS: bool>(
     work: &Work<'_>,
     bones: &Bones,
-    tile: &Range<usize>,
-    room: &mut Room<'_>,
+    start: usize,
+    runs: &[Run],
+    room: &mut Room,
 ) {
-    // The arrays are padded: what lies behind the last vertex is computed and left.
-    for vertex in tile.clone().step_by(L::WIDTH) {
-        let block = Block { work, bones, vertex, sums: &mut *room.sums };
-        let v = points::<L>(&work.skin.positions, vertex);
-        let n = if NORMALS { points::<L>(&work.skin.normals, vertex) } else { v };
-        let (v, n) = M::blend::<L, K, NORMALS, STRETCHED>(block, v, n);
-        let at = 3 * (vertex - tile.start);
-        store(v, &mut room.fours, &mut room.positions[at..]);
-        if NORMALS {
-            store(n, &mut room.fours, &mut room.normals[at..]);
+    let Room { answers, same, sums, signed, .. } = room;
+    let Arrangement { shared, own, .. } = &work.skin.arrangement;
+    for run in runs {
+        let part = Part { work, bones, run, start };
+        let count = run.influence_count;
+        match run.follows {
+            Follows::Same(start) => {
+                let dual_joints = if M::IS_PAIRED { &shared.paired } else { &shared.joints };
+                same.pick(bones, &shared.joints[start..][..count], &dual_joints[start..][..count]);
+                part.blend::<L, M, _, NORMALS>(&mut *same, signed, answers);
+            }
+            Follows::Each(start) => {
+                let joints = &own.joints[start..][..count * run.block_count()];
+                let dual_joints = if M::IS_PAIRED { &own.paired } else { &own.joints };
+                let dual_joints = &dual_joints[start..][..count * run.block_count()];
+                if count == FEW {
+                    let influences = Each::<FEW> { bones, joints, dual_joints, sums };
+                    part.blend::<L, M, _, NORMALS>(influences, signed, answers);
+                } else {
+                    let influences = Each::<MANY> { bones, joints, dual_joints, sums };
+                    part.blend::<L, M, _, NORMALS>(influences, signed, answers);
+                }
+            }
         }
     }
 }
 
-/// The vertices from `vertex` on that a register holds.
-struct Block<'a, 'b> {
-    work: &'a Work<'b>,
+/// A run in a frame.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    work: &'a Work<'a>,
     bones: &'a Bones,
-    vertex: usize,
-    sums: &'a mut [[f32; 16]],
+    run: &'a Run,
+    /// The first vertex of the window.
+    start: usize,
 }
 
-/// A method, block by block.
+impl Part<'_> {
+    #[inline(always)]
+    fn blend<L: Lanes<Real = f32>, M: Blending, I: Influences<L>, const NORMALS: bool>(
+        self,
+        mut influences: I,
+        signed: &mut [Wide],
+        answers: &mut Answers,
+    ) {
+        let Self { work, bones, run, .. } = self;
+        let (skin, count) = (work.skin, run.influence_count);
+        let is_stretched = !bones.residual.is_empty();
+        for block in 0..run.block_count() {
+            let place = run.block + block;
+            let weights = &skin.weights[run.weights + block * count..][..count];
+            let signed = M::signed(self, block, weights, signed);
+            let places = &skin.arrangement.places[place];
+            // Lanes behind the last vertex repeat it.
+            let end = WIDEST.min(run.length - WIDEST * block);
+            for lane in (0..end).step_by(L::WIDTH) {
+                let at = At { block, weights, signed, lane };
+                let v = points(&skin.positions[place], lane);
+                let n = if NORMALS { points(&skin.normals[place], lane) } else { v };
+                let center = if M::ABOUT_CENTERS { points(&work.centers[place], lane) } else { v };
+                let rest = Rest { v, n, center, is_stretched };
+                let (v, n) = M::blend::<L, I, NORMALS>(&mut influences, at, rest);
+                L::scatter_columns([v[0], v[1], v[2], v[2]], &mut answers.positions, &places[lane..]);
+                if NORMALS {
+                    L::scatter_columns([n[0], n[1], n[2], n[2]], &mut answers.normals, &places[lane..]);
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn points<L: Lanes<Real = f32>>([x, y, z]: &Points, lane: usize) -> [L; 3] {
+    [L::load(&x.0[lane..]), L::load(&y.0[lane..]), L::load(&z.0[lane..])]
+}
+
+/// What stays of the vertices of a register.
+#[derive(Clone, Copy)]
+struct Rest<L> {
+    v: [L; 3],
+    n: [L; 3],
+    center: [L; 3],
+    /// Whether any joint scales or shears in this frame.
+    is_stretched: bool,
+}
+
+/// A method.
 trait Blending {
-    /// The vertices `v` and their normals `n`, blended.
-    fn blend<L: Lanes<Real = f32>, const K: usize, const NORMALS: bool, const STRETCHED: bool>(
-        block: Block<'_, '_>,
-        v: [L; 3],
-        n: [L; 3],
+    /// Whether there are centres of rotation.
+    const ABOUT_CENTERS: bool = false;
+
+    /// Whether there is a dual quaternion for each pair of a pivot and a joint.
+    const IS_PAIRED: bool = true;
+
+    /// The weights of a block, with the signs that the rows take.
+    #[inline(always)]
+    fn signed<'a>(
+        _part: Part<'_>,
+        _block: usize,
+        weights: &'a [Wide],
+        _signed: &'a mut [Wide],
+    ) -> &'a [Wide] {
+        weights
+    }
+
+    /// The vertices and their normals, blended.
+    fn blend<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
+        influences: &mut I,
+        at: At<'_>,
+        rest: Rest<L>,
     ) -> ([L; 3], [L; 3]);
 }
 
 struct Linear;
-struct DualQuaternion<S>(PhantomData<S>);
+struct Pivot;
+struct Running;
 struct Centers;
 
 impl Blending for Linear {
     #[inline(always)]
-    fn blend<L: Lanes<Real = f32>, const K: usize, const NORMALS: bool, const STRETCHED: bool>(
-        mut block: Block<'_, '_>,
-        v: [L; 3],
-        n: [L; 3],
+    fn blend<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
+        influences: &mut I,
+        at: At<'_>,
+        rest: Rest<L>,
     ) -> ([L; 3], [L; 3]) {
-        let m = block.matrix::<L, K>(&block.bones.linear);
-        (transform(&m, v), if NORMALS { transform_normal(&m, n) } else { n })
+        let m = matrix(influences, Rows::Linear, at);
+        (transform(&m, rest.v), if NORMALS { transform_normal(&m, rest.n) } else { rest.n })
     }
 }
 
-impl<S: Signing> Blending for DualQuaternion<S> {
+impl Blending for Pivot {
     #[inline(always)]
-    fn blend<L: Lanes<Real = f32>, const K: usize, const NORMALS: bool, const STRETCHED: bool>(
-        mut block: Block<'_, '_>,
-        v: [L; 3],
-        n: [L; 3],
+    fn blend<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
+        influences: &mut I,
+        at: At<'_>,
+        rest: Rest<L>,
     ) -> ([L; 3], [L; 3]) {
-        let (v, n) = block.stretched::<L, K, NORMALS, STRETCHED>(v, n);
-        let q = block.dual_quaternion::<L, K, S>();
+        let (v, n) = stretched::<L, I, NORMALS>(influences, at, rest.v, rest);
+        let q = dual_quaternion(influences, at);
+        (move_by(q, v), if NORMALS { turn_by(q[0], n) } else { n })
+    }
+}
+
+impl Blending for Running {
+    const IS_PAIRED: bool = false;
+
+    #[inline(always)]
+    fn signed<'a>(part: Part<'_>, block: usize, weights: &'a [Wide], signed: &'a mut [Wide]) -> &'a [Wide] {
+        let Part { work, run, bones, start } = part;
+        let Arrangement { shared, own, .. } = &work.skin.arrangement;
+        let first = work.skin.lane(start, run, WIDEST * block).signing(&bones.dual);
+        match run.follows {
+            Follows::Same(at) => {
+                let joints = &shared.joints[at..][..weights.len()];
+                first.sign_block(|k, _| joints[k], signed);
+            }
+            Follows::Each(at) => {
+                let joints = &own.joints[at + block * weights.len()..][..weights.len()];
+                first.sign_block(|k, lane| joints[k][lane], signed);
+            }
+        }
+        &signed[..weights.len()]
+    }
+
+    #[inline(always)]
+    fn blend<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
+        influences: &mut I,
+        at: At<'_>,
+        rest: Rest<L>,
+    ) -> ([L; 3], [L; 3]) {
+        let (v, n) = stretched::<L, I, NORMALS>(influences, at, rest.v, rest);
+        let q = dual_quaternion(influences, at);
         (move_by(q, v), if NORMALS { turn_by(q[0], n) } else { n })
     }
 }
 
 impl Blending for Centers {
+    const ABOUT_CENTERS: bool = true;
+
     #[inline(always)]
-    fn blend<L: Lanes<Real = f32>, const K: usize, const NORMALS: bool, const STRETCHED: bool>(
-        mut block: Block<'_, '_>,
-        v: [L; 3],
-        n: [L; 3],
+    fn blend<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
+        influences: &mut I,
+        at: At<'_>,
+        rest: Rest<L>,
     ) -> ([L; 3], [L; 3]) {
-        let center = points::<L>(block.work.centers, block.vertex);
-        let (arm, n) = block.stretched::<L, K, NORMALS, STRETCHED>(subtract(v, center), n);
-        let m = block.matrix::<L, K>(&block.bones.linear);
-        let q = block.dual_quaternion::<L, K, Pivot>()[0];
-        (add(turn_by(q, arm), transform(&m, center)), if NORMALS { turn_by(q, n) } else { n })
+        let arm = subtract(rest.v, rest.center);
+        let (arm, n) = stretched::<L, I, NORMALS>(influences, at, arm, rest);
+        let m = matrix(influences, Rows::Linear, at);
+        let q = dual_quaternion(influences, at)[0];
+        (add(turn_by(q, arm), transform(&m, rest.center)), if NORMALS { turn_by(q, n) } else { n })
     }
 }
 
-impl Block<'_, '_> {
-    /// The vertices after scale and shear, where there are any.
-    #[inline(always)]
-    fn stretched<L: Lanes<Real = f32>, const K: usize, const NORMALS: bool, const STRETCHED: bool>(
-        &mut self,
-        v: [L; 3],
-        n: [L; 3],
-    ) -> ([L; 3], [L; 3]) {
-        if !STRETCHED {
-            return (v, n);
-        }
-        let m = self.matrix::<L, K>(&self.bones.residual);
-        (transform(&m, v), if NORMALS { transform_normal(&m, n) } else { n })
-    }
-
-    #[inline(always)]
-    fn matrix<L: Lanes<Real = f32>, const K: usize>(&mut self, rows: &[Row]) -> Matrix<L> {
-        self.sum::<L, K, Unsigned, 12>(rows);
-        [self.columns(0), self.columns(4), self.columns(8)]
-    }
-
-    #[inline(always)]
-    fn dual_quaternion<L: Lanes<Real = f32>, const K: usize, S: Signing>(&mut self) -> [[L; 4]; 2] {
-        self.sum::<L, K, S, 8>(&self.bones.dual);
-        [self.columns(0), self.columns(4)]
-    }
-
-    /// Sums the rows of each vertex, their first `NUMBERS`.
-    #[inline(always)]
-    fn sum<L: Lanes<Real = f32>, const K: usize, S: Signing, const NUMBERS: usize>(&mut self, rows: &[Row]) {
-        let skin = self.work.skin;
-        let joints = S::joints(skin);
-        let sums = &mut self.sums[..L::WIDTH];
-        if K == MANY {
-            let count = skin.influence_count;
-            for (lane, sum) in sums.iter_mut().enumerate() {
-                let influences = (self.vertex + lane) * count..(self.vertex + lane + 1) * count;
-                sum_many::<L, S, NUMBERS>(rows, &joints[influences.clone()], &skin.weights[influences], sum);
-            }
-        } else {
-            let lanes = self.vertex..self.vertex + L::WIDTH;
-            let joints = &joints.as_chunks::<K>().0[lanes.clone()];
-            let weights = &skin.weights.as_chunks::<K>().0[lanes];
-            for (lane, sum) in sums.iter_mut().enumerate() {
-                sum_few::<L, K, S, NUMBERS>(rows, &joints[lane], &weights[lane], sum);
-            }
-        }
-    }
-
-    /// Four of the numbers of each vertex's sum.
-    #[inline(always)]
-    fn columns<L: Lanes<Real = f32>>(&self, at: usize) -> [L; 4] {
-        L::load_columns(&self.sums.as_flattened()[at..], 16)
-    }
-}
-
-/// The sum of a vertex with `K` influences.
+/// `v` and the normal after scale and shear, where there are any.
 #[inline(always)]
-fn sum_few<L: Lanes<Real = f32>, const K: usize, S: Signing, const NUMBERS: usize>(
-    rows: &[Row],
-    joints: &[u32; K],
-    weights: &[f32; K],
-    sum: &mut [f32; 16],
-) {
-    let mut signing = S::default();
-    let mut signed = [L::splat(0.0); K];
-    let mut followed = [&rows[0].0; K];
-    for k in 0..K {
-        followed[k] = &rows[joints[k] as usize].0;
-        signed[k] = L::splat(signing.signed(followed[k], weights[k]));
+fn stretched<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
+    influences: &mut I,
+    at: At<'_>,
+    v: [L; 3],
+    rest: Rest<L>,
+) -> ([L; 3], [L; 3]) {
+    if !rest.is_stretched {
+        return (v, rest.n);
     }
-    for at in (0..NUMBERS).step_by(L::WIDTH) {
-        let mut total = L::load(&followed[0][at..]) * signed[0];
-        for k in 1..K {
-            total = total + L::load(&followed[k][at..]) * signed[k];
-        }
-        total.store(&mut sum[at..]);
-    }
-}
-
-/// The sum of a vertex with any number of influences.
-#[inline(always)]
-fn sum_many<L: Lanes<Real = f32>, S: Signing, const NUMBERS: usize>(
-    rows: &[Row],
-    joints: &[u32],
-    weights: &[f32],
-    sum: &mut [f32; 16],
-) {
-    let mut signing = S::default();
-    for (k, (&joint, &weight)) in joints.iter().zip(weights).enumerate() {
-        let row = &rows[joint as usize].0;
-        let signed = L::splat(signing.signed(row, weight));
-        for at in (0..NUMBERS).step_by(L::WIDTH) {
-            let share = L::load(&row[at..]) * signed;
-            let total = if k == 0 { share } else { L::load(&sum[at..]) + share };
-            total.store(&mut sum[at..]);
-        }
-    }
-}
-
-/// How a vertex's weights are signed, influence by influence.
-trait Signing: Default {
-    /// Which rows the influences of all vertices take.
-    fn joints(skin: &Skin) -> &[u32];
-
-    /// The weight, with the sign that the row is to have.
-    #[inline(always)]
-    fn signed(&mut self, _row: &[f32; 16], weight: f32) -> f32 {
-        weight
-    }
-}
-
-/// Not at all.
-#[derive(Default)]
-struct Unsigned;
-
-/// In the rows, of which there is one for each pivot and joint.
-#[derive(Default)]
-struct Pivot;
-
-/// By the sum so far of the real parts.
-#[derive(Default)]
-struct Running([f32; 4]);
-
-impl Signing for Unsigned {
-    #[inline(always)]
-    fn joints(skin: &Skin) -> &[u32] {
-        &skin.joints
-    }
-}
-
-impl Signing for Pivot {
-    #[inline(always)]
-    fn joints(skin: &Skin) -> &[u32] {
-        &skin.paired
-    }
-}
-
-impl Signing for Running {
-    #[inline(always)]
-    fn joints(skin: &Skin) -> &[u32] {
-        &skin.joints
-    }
-
-    #[inline(always)]
-    fn signed(&mut self, row: &[f32; 16], weight: f32) -> f32 {
-        let r = [row[0], row[1], row[2], row[3]];
-        let signed = if dot(self.0, r) < 0.0 { -weight } else { weight };
-        for (sum, r) in self.0.iter_mut().zip(r) {
-            *sum += signed * r;
-        }
-        signed
-    }
-}
-
-#[inline(always)]
-fn points<L: Lanes<Real = f32>>(rows: &[f32], vertex: usize) -> [L; 3] {
-    let [x, y, z, _] = L::load_columns(&rows[3 * vertex..], 3);
-    [x, y, z]
-}
-
-/// Three numbers of each vertex, one vertex after the other; one number more is overwritten.
-#[inline(always)]
-fn store<L: Lanes<Real = f32>>([x, y, z]: [L; 3], fours: &mut [f32; 4 * WIDEST], out: &mut [f32]) {
-    L::store_columns([x, y, z, z], fours, 4);
-    let out = &mut out[..3 * L::WIDTH + 1];
-    for (lane, four) in fours.as_chunks::<4>().0[..L::WIDTH].iter().enumerate() {
-        out[3 * lane..3 * lane + 4].copy_from_slice(four);
-    }
+    let m = matrix(influences, Rows::Residual, at);
+    (transform(&m, v), if NORMALS { transform_normal(&m, rest.n) } else { rest.n })
 }

@@ -45,6 +45,7 @@ impl Bones {
                     (0..parts.len()).map(|joint| dual(joint, 1.0)).collect()
                 }
                 _ => skin
+                    .arrangement
                     .pairs
                     .iter()
                     .map(|pair| pair.map(|joint| joint as usize))

@@ -13,6 +13,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use glam::{DVec3, Vec3};
 
+use super::skin::Lane;
 use super::{Skin, SkinError};
 use crate::error::ShapeError;
 use crate::parallel::for_each_chunk;
@@ -41,9 +42,11 @@ struct Surface {
 /// When a face names a vertex that is not there.
 pub fn centers_of_rotation(skin: &Skin, faces: &[i32], threads: usize) -> Result<Vec<f32>, SkinError> {
     ShapeError::check("faces", faces.len() / 3 * 3, faces.len())?;
-    let surfaces = surfaces(skin, faces)?;
-    let mut wanted: BTreeMap<Sharing, usize> = (0..skin.vertex_count)
-        .flat_map(|v| sharings(&weights(skin, &[v])))
+    let vertices = skin.lanes_by_vertex();
+    let surfaces = surfaces(skin, &vertices, faces)?;
+    let mut wanted: BTreeMap<Sharing, usize> = vertices
+        .iter()
+        .flat_map(|vertex| sharings(&weights(&[*vertex])))
         .map(|sharing| (sharing, 0))
         .collect();
     let keys: Vec<Sharing> = wanted.keys().copied().collect();
@@ -54,13 +57,13 @@ pub fn centers_of_rotation(skin: &Skin, faces: &[i32], threads: usize) -> Result
     });
 
     let mut centers = Vec::with_capacity(3 * skin.vertex_count);
-    for vertex in 0..skin.vertex_count {
-        let parts = sharings(&weights(skin, &[vertex])).map(|sharing| found[wanted[&sharing]]);
+    for vertex in vertices {
+        let parts = sharings(&weights(&[vertex])).map(|sharing| found[wanted[&sharing]]);
         let all = parts.fold(Surface::default(), Surface::plus);
         let center = if all.area > f64::MIN_POSITIVE {
             (all.moment / all.area).as_vec3()
         } else {
-            position(skin, vertex)
+            Vec3::from(vertex.point(&skin.positions))
         };
         centers.extend(center.to_array());
     }
@@ -80,21 +83,21 @@ impl Surface {
 /// For each pair of joints the surface that it shares, by how.
 type Surfaces = HashMap<[u32; 2], BTreeMap<[u16; 2], Surface>>;
 
-fn surfaces(skin: &Skin, faces: &[i32]) -> Result<Surfaces, SkinError> {
+fn surfaces(skin: &Skin, vertices: &[Lane<'_>], faces: &[i32]) -> Result<Surfaces, SkinError> {
     let mut surfaces = Surfaces::new();
     for (face, corners) in faces.as_chunks::<3>().0.iter().enumerate() {
         let vertex_count = skin.vertex_count;
         if let Some(&vertex) = corners.iter().find(|v| !(0..vertex_count as i64).contains(&i64::from(**v))) {
             return Err(SkinError::Face { face, vertex: vertex.into(), vertex_count });
         }
-        let corners = corners.map(|v| v as usize);
-        let [a, b, c] = corners.map(|v| position(skin, v).as_dvec3());
+        let corners = corners.map(|v| vertices[v as usize]);
+        let [a, b, c] = corners.map(|corner| Vec3::from(corner.point(&skin.positions)).as_dvec3());
         let area = 0.5 * (b - a).cross(c - a).length();
         if area.is_nan() || area <= 0.0 {
             continue;
         }
         let surface = Surface { area, moment: area * (a + b + c) / 3.0 };
-        for (pair, steps) in sharings(&weights(skin, &corners)) {
+        for (pair, steps) in sharings(&weights(&corners)) {
             let known = surfaces.entry(pair).or_default().entry(steps).or_default();
             *known = known.plus(surface);
         }
@@ -115,11 +118,11 @@ fn alike((pair, steps): Sharing, surfaces: &Surfaces) -> Surface {
 }
 
 /// The mean of some vertices' weights, by joint.
-fn weights(skin: &Skin, vertices: &[usize]) -> BTreeMap<u32, f32> {
+fn weights(vertices: &[Lane<'_>]) -> BTreeMap<u32, f32> {
     let mut found = BTreeMap::new();
     for vertex in vertices {
-        for place in vertex * skin.influence_count..(vertex + 1) * skin.influence_count {
-            *found.entry(skin.joints[place]).or_default() += skin.weights[place] / vertices.len() as f32;
+        for k in 0..vertex.influence_count() {
+            *found.entry(vertex.joint(k)).or_default() += vertex.weight(k) / vertices.len() as f32;
         }
     }
     found
@@ -134,8 +137,4 @@ fn sharings(weights: &BTreeMap<u32, f32>) -> impl Iterator<Item = Sharing> + use
         let rest = steps[j + 1..].to_vec();
         rest.into_iter().map(move |second| ([first.0, second.0], [first.1, second.1]))
     })
-}
-
-fn position(skin: &Skin, vertex: usize) -> Vec3 {
-    Vec3::from_slice(&skin.positions[3 * vertex..])
 }

@@ -36,6 +36,13 @@ pub enum SkinError {
         /// How many there are.
         joint_count: usize,
     },
+    /// More influences than can be numbered.
+    TooManyInfluences {
+        /// How many each vertex has.
+        each: usize,
+        /// How many vertices there are.
+        vertex_count: usize,
+    },
     /// A triangle with a vertex that is not there.
     Face {
         /// The triangle.
@@ -84,6 +91,13 @@ impl fmt::Display for SkinError {
             Self::TooManyJoints { joint_count } => {
                 write!(f, "{joint_count} joints; a skin can follow {} at most", 1 << 16)
             }
+            Self::TooManyInfluences { each, vertex_count } => write!(
+                f,
+                "{each} influences for each of {vertex_count} vertices; a skin holds {} at most, {} for each \
+                 vertex. Leave out columns of weight 0, or cut the mesh",
+                u32::MAX,
+                1 << 16
+            ),
             Self::Face { face, vertex, vertex_count } => {
                 write!(f, "triangle {face} names vertex {vertex}, but there are {vertex_count}")
             }

@@ -30,7 +30,7 @@ pub(super) fn transform_normal<L: Lanes<Real = f32>>(m: &Matrix<L>, n: [L; 3]) -
     let bc = cross(b, c);
     let turned = [dot(bc, n), dot(cross(c, a), n), dot(cross(a, b), n)];
     let determinant = dot(a, bc);
-    let length = (determinant * determinant).sqrt() * dot(turned, turned).sqrt();
+    let length = determinant.abs() * dot(turned, turned).sqrt();
     // An f32 this small is lost in any length but 0.
     let scale = determinant / (length + L::splat(f32::MIN_POSITIVE));
     [turned[0] * scale, turned[1] * scale, turned[2] * scale]

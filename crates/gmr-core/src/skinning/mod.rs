@@ -36,6 +36,7 @@
 //! Sources: Kavan et al. 2007, "Skinning with Dual Quaternions"; Le and Hodgins 2016, "Real-time Skeletal Skinning
 //! with Optimized Centers of Rotation".
 
+mod arrangement;
 pub mod bind;
 mod blend;
 mod block;
@@ -44,8 +45,11 @@ mod centers;
 mod error;
 mod formulas;
 mod polar;
+mod running;
 mod scalar;
+mod sets;
 mod skin;
+mod sums;
 #[cfg(test)]
 mod tests;
 

@@ -1,36 +1,48 @@
 //! What stays from frame to frame: vertices at rest and what they follow, laid out for blending.
 
-use std::collections::HashMap;
-
 use super::SkinError;
+use super::arrangement::{Arrangement, Follows, Run, WIDEST, WINDOW, arrange};
+use super::bones::Row;
+use super::running::Signing;
+use super::sets::Given;
 use crate::error::ShapeError;
 
-/// Vertices that the widest register takes at a time; arrays are padded to a multiple of it.
-const WIDEST: usize = 16;
+/// The most influences that a vertex can have.
+const MOST: usize = 1 << 16;
 
-/// The influences that the fast path has room for.
-pub(super) const FEW: usize = 4;
+/// A number of each vertex of a block: one cache line, a whole number of registers of any width.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Wide(pub(super) [f32; WIDEST]);
+
+/// The points of a block.
+pub(super) type Points = [Wide; 3];
 
 /// A mesh at rest and the joints that its vertices follow.
 #[derive(Debug, Clone)]
 pub struct Skin {
     pub(super) vertex_count: usize,
     pub(super) joint_count: usize,
-    /// Influences of a vertex, [`FEW`] or more; those that are not used have weight 0 and the pivot's joint.
-    pub(super) influence_count: usize,
-    /// (V, 3), padded.
-    pub(super) positions: Vec<f32>,
-    /// (V, 3), padded; empty where there are none.
-    pub(super) normals: Vec<f32>,
-    /// (V, K), padded.
-    pub(super) weights: Vec<f32>,
-    /// (V, K), padded.
-    pub(super) joints: Vec<u32>,
-    /// (V, K), padded: the place among `pairs` of each influence beside its vertex's pivot.
-    pub(super) paired: Vec<u32>,
-    /// A vertex's pivot, which is the joint that weighs most for it (of equal ones the first), and a joint that it
-    /// follows. Each joint beside itself comes first, in their order.
-    pub(super) pairs: Vec<[u32; 2]>,
+    pub(super) arrangement: Arrangement,
+    /// Of each block.
+    pub(super) positions: Vec<Points>,
+    /// Of each block; empty where there are none.
+    pub(super) normals: Vec<Points>,
+    /// Of each block and influence, in the order of the sets' joints.
+    pub(super) weights: Vec<Wide>,
+    /// As the weights: which influence was given first, which second and so on. Empty where that is their order.
+    pub(super) orders: Vec<[u16; WIDEST]>,
+}
+
+/// A vertex where it is laid out.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lane<'a> {
+    skin: &'a Skin,
+    run: &'a Run,
+    /// Which of the run's vertices it is.
+    at: usize,
+    /// The first vertex of the window.
+    start: usize,
 }
 
 impl Skin {
@@ -52,32 +64,33 @@ impl Skin {
         let vertex_count = vertices.len() / 3;
         ShapeError::check("vertices", 3 * vertex_count, vertices.len())?;
         ShapeError::check("weights", joints.len(), weights.len())?;
-        let given = joints.len().checked_div(vertex_count).unwrap_or(0);
-        ShapeError::check("joints", vertex_count * given, joints.len())?;
+        let each = joints.len().checked_div(vertex_count).unwrap_or(0);
+        ShapeError::check("joints", vertex_count * each, joints.len())?;
         if let Some(normals) = normals {
             ShapeError::check("normals", vertices.len(), normals.len())?;
         }
         if joint_count > 1 << 16 {
             return Err(SkinError::TooManyJoints { joint_count });
         }
-        let influence_count = given.max(FEW);
-        let padded = vertex_count.next_multiple_of(WIDEST);
+        if each > MOST || u32::try_from(joints.len()).is_err() {
+            return Err(SkinError::TooManyInfluences { each, vertex_count });
+        }
+        let given = Given { joints, weights, each };
+        for vertex in 0..vertex_count {
+            given.check(vertex, joint_count)?;
+        }
         let mut skin = Self {
             vertex_count,
             joint_count,
-            influence_count,
-            positions: padded_rows(vertices, padded),
-            normals: normals.map_or(vec![], |normals| padded_rows(normals, padded)),
-            weights: vec![0.0; padded * influence_count],
-            joints: vec![0; padded * influence_count],
-            paired: vec![0; padded * influence_count],
-            pairs: (0..joint_count as u32).map(|joint| [joint; 2]).collect(),
+            arrangement: arrange(vertex_count, joint_count, &given),
+            positions: vec![],
+            normals: vec![],
+            weights: vec![],
+            orders: vec![],
         };
-        let mut known = HashMap::new();
-        for vertex in 0..vertex_count {
-            let row = vertex * given..(vertex + 1) * given;
-            skin.bind(vertex, &joints[row.clone()], &weights[row], &mut known)?;
-        }
+        skin.positions = skin.arranged(vertices);
+        skin.normals = normals.map_or(vec![], |normals| skin.arranged(normals));
+        skin.weigh(&given);
         Ok(skin)
     }
 
@@ -99,54 +112,143 @@ impl Skin {
         !self.normals.is_empty() || self.vertex_count == 0
     }
 
-    fn bind(
-        &mut self,
-        vertex: usize,
-        joints: &[i32],
-        weights: &[f32],
-        known: &mut HashMap<[u32; 2], u32>,
-    ) -> Result<(), SkinError> {
-        let mut pivot = None;
-        for (&joint, &weight) in joints.iter().zip(weights) {
-            if !(weight >= 0.0 && weight.is_finite()) {
-                return Err(SkinError::Weight { vertex, weight });
-            }
-            if weight > 0.0 && !(0..self.joint_count as i64).contains(&joint.into()) {
-                return Err(SkinError::Joint { vertex, joint: joint.into(), joint_count: self.joint_count });
-            }
-            if weight > pivot.map_or(0.0, |(most, _)| most) {
-                pivot = Some((weight, joint as u32));
+    /// (V, 3) `rows` in blocks.
+    pub(super) fn arranged(&self, rows: &[f32]) -> Vec<Points> {
+        let mut found = Vec::with_capacity(self.arrangement.places.len());
+        for (start, runs) in self.windows() {
+            let rows = &rows.as_chunks::<3>().0[start..];
+            for places in runs.iter().flat_map(|run| self.arrangement.places_of(run)) {
+                let points = places.map(|place| rows[place as usize]);
+                found.push([0, 1, 2].map(|axis| Wide(points.map(|point| point[axis]))));
             }
         }
-        let Some((_, pivot)) = pivot else { return Err(SkinError::Loose { vertex }) };
-        let row = vertex * self.influence_count..(vertex + 1) * self.influence_count;
-        self.joints[row.clone()].fill(pivot);
-        self.paired[row.clone()].fill(pivot);
-        for (place, (&joint, &weight)) in row.zip(joints.iter().zip(weights)) {
-            if weight > 0.0 {
-                self.weights[place] = weight;
-                self.joints[place] = joint as u32;
-                self.paired[place] = self.pair([pivot, joint as u32], known);
-            }
-        }
-        Ok(())
+        found
     }
 
-    fn pair(&mut self, pair: [u32; 2], known: &mut HashMap<[u32; 2], u32>) -> u32 {
-        if pair[0] == pair[1] {
-            return pair[0];
+    /// Puts down the weights and in which order they were given.
+    fn weigh(&mut self, given: &Given<'_>) {
+        let count = self.arrangement.weights;
+        let (mut weights, mut orders) = (vec![Wide([0.0; WIDEST]); count], vec![[0; WIDEST]; count]);
+        let mut is_ascending = true;
+        let mut influences = vec![];
+        let mut at = 0;
+        for (start, runs) in self.windows() {
+            for run in runs {
+                for places in self.arrangement.places_of(run) {
+                    for (lane, &place) in places.iter().enumerate() {
+                        given.influences(start + place as usize, &mut influences);
+                        for (k, influence) in influences.iter().enumerate() {
+                            weights[at + k].0[lane] = influence.weight;
+                            orders[at + influence.given as usize][lane] = k as u16;
+                            is_ascending &= influence.given as usize == k;
+                        }
+                    }
+                    at += run.influence_count;
+                }
+            }
         }
-        *known.entry(pair).or_insert_with(|| {
-            self.pairs.push(pair);
-            (self.pairs.len() - 1) as u32
-        })
+        self.weights = weights;
+        self.orders = if is_ascending { vec![] } else { orders };
+    }
+
+    /// The first vertex and the runs of each window.
+    pub(super) fn windows(&self) -> impl Iterator<Item = (usize, &[Run])> {
+        let Arrangement { windows, runs, .. } = &self.arrangement;
+        windows.iter().zip((0..).step_by(WINDOW)).map(|(window, start)| (start, &runs[window.clone()]))
+    }
+
+    /// The vertices of a run of the window that begins with vertex `start`.
+    pub(super) fn lanes<'a>(&'a self, start: usize, run: &'a Run) -> impl Iterator<Item = Lane<'a>> {
+        (0..run.length).map(move |at| self.lane(start, run, at))
+    }
+
+    /// One of them.
+    pub(super) fn lane<'a>(&'a self, start: usize, run: &'a Run, at: usize) -> Lane<'a> {
+        Lane { skin: self, run, at, start }
+    }
+
+    /// Every vertex, in the caller's order.
+    pub(super) fn lanes_by_vertex(&self) -> Vec<Lane<'_>> {
+        let mut found: Vec<Lane<'_>> = self
+            .windows()
+            .flat_map(|(start, runs)| runs.iter().flat_map(move |run| self.lanes(start, run)))
+            .collect();
+        found.sort_unstable_by_key(|lane| lane.vertex());
+        found
     }
 }
 
-/// Rows of three, with rows of zeros up to `count` of them and one number more, so that four can be read of any.
-pub(super) fn padded_rows(rows: &[f32], count: usize) -> Vec<f32> {
-    let mut padded = Vec::with_capacity(3 * count + 1);
-    padded.extend_from_slice(rows);
-    padded.resize(3 * count + 1, 0.0);
-    padded
+impl Arrangement {
+    fn places_of(&self, run: &Run) -> &[[u16; WIDEST]] {
+        &self.places[run.block..][..run.block_count()]
+    }
+}
+
+impl<'a> Lane<'a> {
+    /// Which vertex it is.
+    pub(super) fn vertex(self) -> usize {
+        self.start + usize::from(self.skin.arrangement.places[self.run.block + self.block()][self.lane()])
+    }
+
+    /// Its own of `points`, or of `normals`.
+    pub(super) fn point(self, points: &[Points]) -> [f32; 3] {
+        let [x, y, z] = &points[self.run.block + self.block()];
+        [x.0[self.lane()], y.0[self.lane()], z.0[self.lane()]]
+    }
+
+    /// How many joints it follows.
+    pub(super) fn influence_count(self) -> usize {
+        self.run.influence_count
+    }
+
+    /// The `k`-th joint that it follows, in ascending order.
+    pub(super) fn joint(self, k: usize) -> u32 {
+        let Arrangement { shared, own, .. } = &self.skin.arrangement;
+        self.follows(&shared.joints, &own.joints, k)
+    }
+
+    /// The place among the pairs of its `k`-th joint beside its pivot.
+    pub(super) fn paired(self, k: usize) -> u32 {
+        let Arrangement { shared, own, .. } = &self.skin.arrangement;
+        self.follows(&shared.paired, &own.paired, k)
+    }
+
+    fn follows(self, shared: &[u32], own: &[[u32; WIDEST]], k: usize) -> u32 {
+        match self.run.follows {
+            Follows::Same(start) => shared[start + k],
+            Follows::Each(start) => own[start + self.block() * self.run.influence_count + k][self.lane()],
+        }
+    }
+
+    /// How much it follows its `k`-th joint.
+    pub(super) fn weight(self, k: usize) -> f32 {
+        self.weights()[k].0[self.lane()]
+    }
+
+    /// Its signs where it follows `rows` by the sum so far.
+    pub(super) fn signing(self, rows: &'a [Row]) -> Signing<'a> {
+        let weights = self.weights();
+        let orders = &self.skin.orders;
+        let orders = if orders.is_empty() { orders } else { &orders[self.first_weight()..][..weights.len()] };
+        Signing { rows, weights, orders, lane: self.lane() }
+    }
+
+    /// For each influence those of its block.
+    fn weights(self) -> &'a [Wide] {
+        &self.skin.weights[self.first_weight()..][..self.run.influence_count]
+    }
+
+    /// Which of the run's blocks holds it.
+    fn block(self) -> usize {
+        self.at / WIDEST
+    }
+
+    /// Which lane of the block it is.
+    pub(super) fn lane(self) -> usize {
+        self.at % WIDEST
+    }
+
+    fn first_weight(self) -> usize {
+        self.run.weights + self.block() * self.run.influence_count
+    }
 }

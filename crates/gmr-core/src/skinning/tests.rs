@@ -236,24 +236,158 @@ fn linear_blending_collapses_in_a_twist_and_the_others_do_not() {
     }
 }
 
+/// A crowd of vertices, each of which follows one of some sets of up to `most` joints; of one number everything else
+/// follows.
+fn crowd(vertex_count: usize, set_count: usize, most: usize, seed: u64) -> Scene {
+    let mut state = seed;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let joint_count = most + 3;
+    let sets: Vec<Vec<i32>> = (0..set_count)
+        .map(|_| {
+            let mut joints: Vec<i32> = (0..joint_count as i32).collect();
+            (0..most).for_each(|k| joints.swap(k, k + random(joint_count - k)));
+            joints[..1 + random(most)].to_vec()
+        })
+        .collect();
+    let (mut joints, mut weights) = (vec![], vec![]);
+    for _ in 0..vertex_count {
+        let mut set = sets[random(set_count)].clone();
+        let turn = random(set.len());
+        set.rotate_left(turn);
+        let mut row: Vec<f32> = set.iter().map(|_| 0.01 + random(1000) as f32 / 1000.0).collect();
+        let sum: f32 = row.iter().sum();
+        row.iter_mut().for_each(|weight| *weight /= sum);
+        row.resize(most, 0.0);
+        set.resize(most, -1);
+        joints.extend(set);
+        weights.extend(row);
+    }
+    let mut numbers =
+        |count: usize| -> Vec<f32> { (0..count).map(|_| random(2000) as f32 / 1000.0 - 1.0).collect() };
+    let (vertices, centers) = (numbers(3 * vertex_count), numbers(3 * vertex_count));
+    let transforms = numbers(12 * joint_count)
+        .chunks(12)
+        .map(|m| DAffine3 {
+            matrix3: DMat3::from_cols_array(&std::array::from_fn(|k| m[k].into())),
+            translation: DVec3::new(m[9].into(), m[10].into(), m[11].into()),
+        })
+        .collect();
+    let normals = [0.6, 0.0, -0.8].repeat(vertex_count);
+    Scene { vertices, normals, joints, weights, centers, transforms, joint_count, frame_count: 1 }
+}
+
+impl Scene {
+    /// The same with one vertex alone.
+    fn alone(&self, vertex: usize) -> Self {
+        let each = self.joints.len() / self.vertex_count();
+        let three = |numbers: &[f32]| numbers[3 * vertex..][..3].to_vec();
+        Self {
+            vertices: three(&self.vertices),
+            normals: three(&self.normals),
+            centers: three(&self.centers),
+            joints: self.joints[each * vertex..][..each].to_vec(),
+            weights: self.weights[each * vertex..][..each].to_vec(),
+            ..self.clone()
+        }
+    }
+}
+
+/// Few and many vertices, sets and influences; whole windows of vertices and what is left of them.
+const CROWDS: [(usize, usize, usize); 11] = [
+    (1, 1, 1),
+    (7, 1, 4),
+    (8, 1, 3),
+    (16, 1, 2),
+    (17, 2, 4),
+    (300, 5, 4),
+    (300, 300, 4),
+    (300, 6, 9),
+    (4095, 40, 4),
+    (4096, 4096, 4),
+    (4113, 3, 7),
+];
+
+#[test]
+fn crowds_move_alike_on_every_instruction_set_and_thread_count() {
+    for (seed, (vertices, sets, influences)) in (0..).zip(CROWDS) {
+        let mut scene = crowd(vertices, sets, influences, seed);
+        let further: Vec<DAffine3> = scene.transforms.iter().rev().copied().collect();
+        (1..18).for_each(|_| scene.transforms.extend(&further));
+        scene.frame_count = 18;
+        for method in METHODS {
+            let [positions, normals] = scene.blended(Isa::Scalar, method, 1);
+            for (isa, threads) in Isa::available().flat_map(|isa| [(isa, 1), (isa, 3)]) {
+                let found = scene.blended(isa, method, threads);
+                assert!(bits(&found[0]) == bits(&positions), "{isa} {method}, crowd {seed}");
+                assert!(bits(&found[1]) == bits(&normals), "{isa} {method}, crowd {seed}");
+            }
+        }
+    }
+}
+
+#[test]
+fn threads_that_share_the_vertices_of_a_frame_give_the_same() {
+    let scene = crowd(70_000, 50, 4, 5);
+    for method in METHODS {
+        let expected = scene.blended(Isa::Scalar, method, 1);
+        assert!(scene.blended(Isa::current(), method, 3).map(|n| bits(&n)) == expected.map(|n| bits(&n)));
+    }
+}
+
+#[test]
+fn a_vertex_moves_in_a_crowd_as_it_does_alone() {
+    for (seed, (vertices, sets, influences)) in (0..).zip(CROWDS) {
+        let scene = crowd(vertices, sets, influences, seed);
+        for method in METHODS {
+            let [positions, normals] = scene.blended(Isa::current(), method, 1);
+            for vertex in (0..vertices).step_by(1 + vertices / 100) {
+                let alone = scene.alone(vertex).blended(Isa::current(), method, 1);
+                let place = 3 * vertex..3 * vertex + 3;
+                assert_eq!(
+                    bits(&alone[0]),
+                    bits(&positions[place.clone()]),
+                    "{method}, vertex {vertex}, crowd {seed}"
+                );
+                assert_eq!(bits(&alone[1]), bits(&normals[place]), "{method}, vertex {vertex}, crowd {seed}");
+            }
+        }
+    }
+}
+
+#[test]
+fn in_which_order_influences_are_given_matters_to_the_running_sum_alone() {
+    let scene = crowd(500, 20, 4, 11);
+    let mut turned = scene.clone();
+    turned.joints.chunks_mut(4).for_each(|joints| joints.reverse());
+    turned.weights.chunks_mut(4).for_each(|weights| weights.reverse());
+    for method in METHODS {
+        let given = scene.blended(Isa::current(), method, 1).map(|numbers| bits(&numbers));
+        let reversed = turned.blended(Isa::current(), method, 1).map(|numbers| bits(&numbers));
+        assert_eq!(given == reversed, method != "running", "{method}");
+    }
+}
+
 #[test]
 fn nan_stays_with_the_vertices_that_follow_it() {
-    let mut scene = Scene {
-        vertices: (0..60).map(|k| k as f32).collect(),
-        normals: [1.0, 0.0, 0.0].repeat(20),
-        joints: (0..20).map(|v| v % 2).collect(),
-        weights: vec![1.0; 20],
-        centers: vec![0.0; 60],
-        transforms: vec![DAffine3::IDENTITY; 4],
-        joint_count: 2,
-        frame_count: 2,
-    };
-    scene.transforms[1].translation.x = f64::NAN;
-    for (method, isa) in METHODS.into_iter().flat_map(|method| Isa::available().map(move |isa| (method, isa)))
-    {
-        let positions = points(&scene.blended(isa, method, 1)[0]);
-        for (k, position) in positions.iter().enumerate() {
-            assert_eq!(position.is_nan(), k < 20 && k % 2 == 1, "{method} {isa} vertex {k}");
+    for (seed, (vertices, sets, influences)) in (0..).zip(CROWDS) {
+        let mut scene = crowd(vertices, sets, influences, seed);
+        let sound = scene.transforms.clone();
+        scene.transforms[1].translation.x = f64::NAN;
+        scene.transforms.extend(sound);
+        scene.frame_count = 2;
+        let follows = |vertex: usize| {
+            let row = vertex * influences..(vertex + 1) * influences;
+            row.clone().any(|k| scene.joints[k] == 1 && scene.weights[k] > 0.0)
+        };
+        for (method, isa) in METHODS.into_iter().flat_map(|m| Isa::available().map(move |isa| (m, isa))) {
+            let positions = points(&scene.blended(isa, method, 1)[0]);
+            for (k, position) in positions.iter().enumerate() {
+                let expected = k < vertices && follows(k);
+                assert_eq!(position.is_nan(), expected, "{method} {isa}, vertex {k}, crowd {seed}");
+            }
         }
     }
 }
