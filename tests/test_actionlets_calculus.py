@@ -153,6 +153,44 @@ def test_a_window_waits_for_the_first_extreme_and_holds_the_last(begin: float, s
     assert track.duration == pytest.approx(seconds)
 
 
+steps_of_tracks = st.lists(
+    st.lists(st.tuples(durations, angles, skews), min_size=2, max_size=6), min_size=1, max_size=4
+)
+
+
+@given(steps_of_tracks, st.floats(-3, 1), st.floats(0.1, 4))
+def test_a_score_through_extremes_is_that_of_the_tracks_through_them(
+    steps: list[list[tuple[float, float, float]]], begin: float, seconds: float
+) -> None:
+    rows = {f"dof {k}": np.array(one) for k, one in enumerate(steps)}
+    for one in rows.values():
+        one[:, 0] = begin + np.cumsum(one[:, 0])
+    score = Score.through(rows, seconds)
+    tracks = Score({dof: Track.through(one, (0.0, seconds)) for dof, one in rows.items()})
+    times = np.linspace(-0.1, seconds + 0.1, 57)
+    np.testing.assert_allclose(score.angles(times), tracks.angles(times), atol=1e-9)
+    speed = 1 + np.abs(tracks.velocities(times)).max()
+    np.testing.assert_allclose(score.velocities(times), tracks.velocities(times), atol=1e-6 * speed)
+    assert score == tracks
+    assert score.dofs == tracks.dofs
+    assert score.duration == seconds
+
+
+@pytest.mark.parametrize(
+    ("rows", "told"),
+    [
+        ([[0.0, 0.0, 0.5]], "1 given"),
+        ([[0.0, 0.0, 0.5], [0.0, 1.0, 0.5]], "extreme 1 of a track is at 0 s"),
+        ([[0.0, 0.0, 0.5], [1.0, math.nan, 0.5]], "angle of extreme 1"),
+        ([[0.0, 0.0, 0.5], [1.0, 1.0, 1.5]], "skew T is 1.5"),
+    ],
+)
+def test_extremes_that_make_no_track_make_no_score(rows: list[list[float]], told: str) -> None:
+    good = np.array([[0.0, 0.0, 0.5], [1.0, 1.0, 0.5]])
+    with pytest.raises(gmr.ActionletError, match=told):
+        Score.through({"good": good, "wrong": np.array(rows)}, 1.0)
+
+
 @given(scores(whole=False))
 def test_a_score_samples_its_tracks_and_rests_elsewhere(score: Score) -> None:
     names = ["unmoved", *reversed(score.dofs)]

@@ -43,9 +43,10 @@ def share(u: Floats, skew: Floats | float) -> Floats:
     s = u - (T/pi) sin(pi u/T) up to T, and u + ((1-T)/pi) sin(pi (u-T)/(1-T)) from there.
     """
     rising, falling = _halves(u, skew)
-    up = skew * (rising - np.sin(np.pi * rising) / np.pi)
-    down = skew + (1 - skew) * (falling + np.sin(np.pi * falling) / np.pi)
-    found: Floats = np.where(u <= skew, up, down)
+    is_up = u <= skew
+    half = np.where(is_up, rising, falling)
+    swing = np.sin(np.pi * half) / np.pi
+    found: Floats = np.where(is_up, skew * (half - swing), skew + (1 - skew) * (half + swing))
     return found
 
 

@@ -6,7 +6,7 @@ Source: Zheng et al., "Human Motion Simulation and Action Corpus", Eqs. 2 and 3:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gmr.actionlets.actionlet import checked_number
+from gmr.actionlets.flat import Flat
 from gmr.actionlets.track import Track
 from gmr.errors import ActionletError
 
@@ -49,6 +50,27 @@ class Score:
                     " tracks of a score last as long: add a silence or stretch one of them"
                 )
         object.__setattr__(self, "tracks", MappingProxyType(tracks))
+
+    @classmethod
+    def through(cls, extremes: Mapping[str, NDArray[np.float64]], seconds: float) -> Score:
+        """The score whose tracks go through extremes, from 0 to ``seconds``; each track is made when it is
+        first asked for.
+
+        Args:
+            extremes: name -> (N, 3) as in :meth:`Track.through`.
+
+        Raises:
+            ActionletError: as :meth:`Track.through`.
+        """
+        tracks = _Through(dict(extremes), seconds)
+        rows = np.concatenate([*tracks.extremes.values()]) if extremes else np.zeros((0, 3))
+        first = np.cumsum([0, *map(len, tracks.extremes.values())])
+        if not extremes or not _can_be(rows, first, seconds):
+            return cls({dof: tracks[dof] for dof in tracks})
+        made = cls.__new__(cls)
+        object.__setattr__(made, "tracks", tracks)
+        made.__dict__.update(duration=seconds, _flat=Flat.through(rows, first, seconds))
+        return made
 
     @property
     def dofs(self) -> tuple[str, ...]:
@@ -100,11 +122,11 @@ class Score:
         Returns:
             (F, D) radians.
         """
-        return self._columns(times, dofs, lambda track, t: track.angle(t))
+        return self._columns(times, dofs, 0)
 
     def velocities(self, times: ArrayLike, dofs: Iterable[str] | None = None) -> NDArray[np.float64]:
         """(F, D) radians a second; otherwise as :meth:`angles`."""
-        return self._columns(times, dofs, lambda track, t: track.velocity(t))
+        return self._columns(times, dofs, 1)
 
     def mapped(self, change: Callable[[Track], Track]) -> Score:
         """The score with ``change`` made to every track."""
@@ -153,20 +175,56 @@ class Score:
             )
         return Score({**self.tracks, **other.tracks})
 
-    def _columns(
-        self,
-        times: ArrayLike,
-        dofs: Iterable[str] | None,
-        sampled: Callable[[Track, NDArray[np.float64]], NDArray[np.float64]],
-    ) -> NDArray[np.float64]:
+    @cached_property
+    def _flat(self) -> Flat:
+        return Flat.of([*self.tracks.values()])
+
+    def _columns(self, times: ArrayLike, dofs: Iterable[str] | None, order: int) -> NDArray[np.float64]:
         seconds = np.asarray(times, np.float64)
         if seconds.ndim != 1:
             raise ActionletError(
                 f"a score is sampled at a row of times; these have the shape {seconds.shape}"
             )
-        names = self.dofs if dofs is None else tuple(dofs)
+        sampled = self._flat.at(seconds, order)
+        if dofs is None:
+            return sampled
+        columns = {name: column for column, name in enumerate(self.dofs)}
+        names = tuple(dofs)
+        there = [column for column, name in enumerate(names) if name in columns]
         found = np.zeros((len(seconds), len(names)))
-        for column, name in enumerate(names):
-            if name in self.tracks:
-                found[:, column] = sampled(self.tracks[name], seconds)
+        found[:, there] = sampled[:, [columns[names[column]] for column in there]]
         return found
+
+
+class _Through(Mapping[str, Track]):
+    """Tracks through extremes, each made when it is first asked for."""
+
+    def __init__(self, extremes: Mapping[str, NDArray[np.float64]], seconds: float) -> None:
+        self.extremes = extremes
+        self.seconds = seconds
+        self._made: dict[str, Track] = {}
+
+    def __getitem__(self, dof: str) -> Track:
+        if dof not in self._made:
+            self._made[dof] = Track.through(self.extremes[dof], (0.0, self.seconds))
+        return self._made[dof]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.extremes)
+
+    def __len__(self) -> int:
+        return len(self.extremes)
+
+
+def _can_be(rows: NDArray[np.float64], first: NDArray[np.intp], seconds: float) -> bool:
+    """Whether all that :meth:`Track.through` demands holds in all tracks."""
+    rises = np.diff(rows[:, 0]) > 0
+    rises[first[1:-1] - 1] = True
+    ends = np.delete(rows[:, 2], first[:-1])
+    return bool(
+        seconds > 0
+        and (np.diff(first) >= 2).all()
+        and np.isfinite(rows).all()
+        and rises.all()
+        and ((ends > 0) & (ends < 1)).all()
+    )

@@ -14,9 +14,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gmr.actionlets.actionlet import SYMMETRIC, Actionlet, checked_number, on_the_way
-from gmr.actionlets.bell import bell, bell_slope, share
-from gmr.actionlets.measured import Measured, cubic
+from gmr.actionlets.actionlet import SYMMETRIC, Actionlet, checked_number
+from gmr.actionlets.flat import Flat
+from gmr.actionlets.measured import Measured
 from gmr.arrays import read_only
 from gmr.errors import ActionletError
 
@@ -171,67 +171,12 @@ class Track:
         return _shown(self.pieces[first:last], max(lead, 0.0), max(trail, 0.0), slack)
 
     @cached_property
-    def _flat(self) -> _Flat:
-        return _Flat.of(self)
+    def _flat(self) -> Flat:
+        return Flat.of([self])
 
     def _at(self, t: ArrayLike, order: int) -> Floats:
-        seconds = np.clip(np.asarray(t, np.float64), 0, self.duration) + self.lead
-        return self._flat.at(np.clip(seconds, 0, self.bounds[-1]), order)
-
-
-@dataclass(frozen=True, slots=True)
-class _Flat:
-    """The pieces as arrays, so that sampling does nothing piece by piece."""
-
-    begins: Floats
-    starts: Floats
-    ends: Floats
-    durations: Floats
-    skews: Floats
-    measured: NDArray[np.bool_]
-    knots: Floats
-    """Of all measured pieces together; nobody asks for what lies between two that do not touch."""
-    values: Floats
-    slopes: Floats
-
-    @classmethod
-    def of(cls, track: Track) -> _Flat:
-        pieces = track.pieces
-        curves = [
-            (piece.knots + begin, piece.angles, piece.slopes())
-            for begin, piece in zip(track.bounds[:-1], pieces, strict=True)
-            if isinstance(piece, Measured)
-        ]
-        none = np.zeros(0)
-        knots, values, slopes = map(np.concatenate, zip(*curves, strict=True)) if curves else (none,) * 3
-        return cls(
-            track.bounds[:-1],
-            np.array([piece.start for piece in pieces]),
-            np.array([piece.end for piece in pieces]),
-            np.array([piece.duration for piece in pieces]),
-            np.array([piece.skew if isinstance(piece, Actionlet) else SYMMETRIC for piece in pieces]),
-            np.array([isinstance(piece, Measured) for piece in pieces]),
-            knots, values, slopes,
-        )  # fmt: skip
-
-    def at(self, t: Floats, order: int) -> Floats:
-        i = np.searchsorted(self.begins, t, side="right") - 1
-        duration, skew = self.durations[i], self.skews[i]
-        u = np.minimum((t - self.begins[i]) / duration, 1.0)
-        travel = self.ends[i] - self.starts[i]
-        match order:
-            case 0:
-                found = on_the_way(self.starts[i], self.ends[i], share(u, skew))
-            case 1:
-                found = 2 * travel / duration * bell(u, skew)
-            case _:
-                found = 2 * travel / duration**2 * bell_slope(u, skew)
-        if not len(self.knots):
-            return np.asarray(found)
-        return np.where(self.measured[i], self._measured_at(t, self.measured[i], order), found)
-
-    def _measured_at(self, t: Floats, wanted: NDArray[np.bool_], order: int) -> Floats:
-        return cubic(self.knots, self.values, self.slopes, np.where(wanted, t, self.knots[0]), order)
+        seconds = np.asarray(t, np.float64)
+        return self._flat.at(seconds.ravel(), order).reshape(seconds.shape)
 
 
 def _shown(pieces: tuple[Piece, ...], lead: float, trail: float, slack: float) -> Track:

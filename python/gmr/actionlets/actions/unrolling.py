@@ -13,7 +13,6 @@ from gmr.actionlets.actions.timeline import Timeline
 from gmr.actionlets.actions.units import Extreme
 from gmr.actionlets.actions.values import Value
 from gmr.actionlets.score import Score
-from gmr.actionlets.track import Track
 
 __all__ = ["all_knots", "intervals", "labelled", "scored", "united"]
 
@@ -59,11 +58,13 @@ def _knots(
 
 def scored(knots_of: Mapping[str, Floats], seconds: float) -> Score:
     """The score through the extremes of all degrees of freedom, from 0 to ``seconds``."""
-    return Score({dof: Track.through(_apart(rows), (0.0, seconds)) for dof, rows in knots_of.items()})
+    return Score.through({dof: _apart(rows) for dof, rows in knots_of.items()}, seconds)
 
 
 def _apart(rows: Floats) -> Floats:
     """The extremes without those that come too soon after another; two at least."""
+    if len(rows) > 1 and (np.diff(rows[:, 0]) >= _SHORTEST).all():
+        return rows
     kept = [rows[0]]
     for row in rows[1:]:
         if row[0] - kept[-1][0] >= _SHORTEST:
