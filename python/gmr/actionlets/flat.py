@@ -20,6 +20,9 @@ __all__ = ["Flat"]
 
 Floats = NDArray[np.float64]
 
+_BLOCK = 4096
+"""Frames that are sampled at once: memory for the steps between is needed for no more than them."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Flat:
@@ -91,6 +94,10 @@ class Flat:
             t: (F,) seconds; clamped to what each track lasts.
             order: 0, 1 or 2.
         """
+        parts = np.array_split(t, max(-(-len(t) // _BLOCK), 1))
+        return np.concatenate([self._at(part, order) for part in parts])
+
+    def _at(self, t: Floats, order: int) -> Floats:
         seconds = np.clip(t, 0.0, self.seconds[:, None])
         spans = zip(self.first[:-1].tolist(), self.first[1:].tolist(), seconds, strict=True)
         # Where the first piece of a track begins is not asked: what comes before it is part of it.
@@ -109,7 +116,7 @@ class Flat:
             row = curve.column
             inside = curve.measured[i[row] - self.first[row]]
             found[row, inside] = curve.at(seconds[row, inside], order)
-        return np.ascontiguousarray(found.T)
+        return found.T
 
 
 @dataclass(frozen=True, slots=True, eq=False)

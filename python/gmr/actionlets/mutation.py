@@ -9,27 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from itertools import islice, pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gmr.actionlets.actionlet import Actionlet, checked_number
-from gmr.actionlets.operations.timing import is_periodic
+from gmr.actionlets.choices import Choices
+from gmr.actionlets.mutable import Mutable, Mutant
 from gmr.actionlets.score import Score
 from gmr.actionlets.track import MEETING, Piece, Track
 from gmr.errors import ActionletError
 
 __all__ = ["mutate", "substituted", "variation"]
-
-Floats = NDArray[np.float64]
-
-_TEMPO, _WARP, _TRAVEL, _SKEW = 0.3, 0.8, 0.45, 2.0
-"""What an amount of 1 changes at most: the logarithm of the duration; the pace from moment to moment, as a
-share; an extreme, as a share of the lesser way to its neighbours (below a half, so that no way is turned
-round); the logarithm of ``T / (1 - T)``."""
-
-_WAVES = 3
-"""Slow waves of which a change of pace is made."""
 
 
 def variation(
@@ -84,16 +75,8 @@ def mutate(
         raise ActionletError(f"the amount of a mutation is {size:g}; give a number from 0 to 1")
     together = _groups(score, groups)
     _check_ranges(score, ranges or {})
-    duration = score.duration * float(np.exp(size * _TEMPO * rng.uniform(-1, 1)))
-    found: dict[str, Track] = {}
-    for group in together:
-        pace = _waves(rng, size)
-        for name in group:
-            low, high = (ranges or {}).get(name, (-np.inf, np.inf))
-            track = score[name]
-            times = duration * _warped(track.times / track.duration, pace)
-            found[name] = _perturbed(track, times, duration, rng, size, low, high)
-    return Score({name: found[name] for name in score.dofs})
+    material = Mutable.of(score, ranges or {}, together)
+    return _made(score, material, material.changed(rng, size))
 
 
 def substituted(score: Score, others: Mapping[str, Sequence[Piece]], rng: np.random.Generator) -> Score:
@@ -108,93 +91,44 @@ def substituted(score: Score, others: Mapping[str, Sequence[Piece]], rng: np.ran
     Returns:
         The same extremes at the same times.
     """
+    choices = Choices.of(score, others)
+    drawn = iter(choices.drawn(rng).tolist())
     found = {}
     for name, track in score.tracks.items():
-        chosen = [_another(piece, others.get(name, ()), rng) for piece in track.pieces]
-        if not track.is_whole and is_periodic(track):
-            chosen[-1] = chosen[0]
-        found[name] = replace(track, pieces=tuple(chosen))
+        own = zip(track.pieces, islice(drawn, len(track.pieces)), strict=True)
+        pieces = tuple(
+            piece if k < 0 else choices.others[k].lasting(piece.duration).between(piece.start, piece.end)
+            for piece, k in own
+        )
+        found[name] = replace(track, pieces=pieces)
     return Score(found)
 
 
-def _another(piece: Piece, others: Sequence[Piece], rng: np.random.Generator) -> Piece:
-    alike = [other for other in others if other.travel * piece.travel > 0]
-    if not alike:
-        return piece
-    chosen = alike[int(rng.integers(len(alike)))]
-    return chosen.lasting(piece.duration).between(piece.start, piece.end)
-
-
-def _perturbed(
-    track: Track,
-    times: Floats,
-    duration: float,
-    rng: np.random.Generator,
-    size: float,
-    low: float,
-    high: float,
-) -> Track:
-    """The track with its pieces between the given times, a ``duration`` shown of it."""
-    level = _levels(track)
-    room = np.full(level.max() + 1, np.inf)
-    for place, piece in enumerate(track.pieces):
-        if level[place] != level[place + 1]:
-            for one in level[place : place + 2]:
-                room[one] = min(room[one], abs(piece.travel))
-    room[~np.isfinite(room)] = 0.0
-    shifts = size * _TRAVEL * room * rng.uniform(-1, 1, len(room))
-    extremes = np.clip(track.extremes + shifts[level], low, high)
-    tilts = size * _SKEW * rng.uniform(-1, 1, len(track.pieces))
-    if not track.is_whole and is_periodic(track):
-        tilts[-1] = tilts[0]
-    pieces = tuple(
-        _tilted(piece, tilt).lasting(seconds).between(float(start), float(end))
-        for piece, tilt, seconds, start, end in zip(
-            track.pieces, tilts.tolist(), np.diff(times).tolist(), extremes[:-1], extremes[1:], strict=True
+def _made(score: Score, before: Mutable, after: Mutant) -> Score:
+    """The score that a mutation made of another."""
+    duration = after.tempo * score.duration
+    found = {}
+    for number, dof in enumerate(before.dofs):
+        track, first, last = score[dof], int(before.first[number]), int(before.first[number + 1])
+        times = duration * after.times[first + number : last + number + 1]
+        extremes = after.extremes[first + number : last + number + 1].tolist()
+        pieces = tuple(
+            _bent(piece, skew).lasting(seconds).between(start, end)
+            for piece, skew, seconds, (start, end) in zip(
+                track.pieces,
+                after.skews[first:last].tolist(),
+                np.diff(times).tolist(),
+                pairwise(extremes),
+                strict=True,
+            )
         )
-    )
-    lead, trail = max(-float(times[0]), 0.0), max(float(times[-1]) - duration, 0.0)
-    return Track(pieces, lead if track.lead else 0.0, trail if track.trail else 0.0)
+        lead, trail = max(-float(times[0]), 0.0), max(float(times[-1]) - duration, 0.0)
+        found[dof] = Track(pieces, lead if track.lead else 0.0, trail if track.trail else 0.0)
+    return Score({dof: found[dof] for dof in score.dofs})
 
 
-def _tilted(piece: Piece, tilt: float) -> Piece:
-    if not isinstance(piece, Actionlet) or piece.is_silence:
-        return piece
-    odds = piece.skew / (1 - piece.skew) * np.exp(tilt)
-    return replace(piece, skew=float(np.clip(odds / (1 + odds), 1e-3, 1 - 1e-3)))
-
-
-def _levels(track: Track) -> NDArray[np.int64]:
-    """(N + 1,) numbers of the extremes; those that must stay at one angle have the same number: both ends of
-    a silence, and what the end of a periodic track shares with its beginning."""
-    count = len(track.pieces) + 1
-    same = np.arange(count)
-
-    def unite(one: int, other: int) -> None:
-        low, high = sorted((int(same[one]), int(same[other])))
-        same[same == high] = low
-
-    for place, piece in enumerate(track.pieces):
-        if piece.is_silence or abs(piece.travel) <= MEETING:
-            unite(place, place + 1)
-    if is_periodic(track):
-        unite(0, count - 1 if track.is_whole else count - 2)
-        if not track.is_whole:
-            unite(1, count - 1)
-    return np.unique(same, return_inverse=True)[1].astype(np.int64)
-
-
-def _waves(rng: np.random.Generator, size: float) -> tuple[Floats, Floats]:
-    """Sizes and phases of the waves of a change of pace; the sizes add up to less than 1."""
-    return size * _WARP / _WAVES * rng.uniform(-1, 1, _WAVES), rng.uniform(0, 2 * np.pi, _WAVES)
-
-
-def _warped(u: Floats, pace: tuple[Floats, Floats]) -> Floats:
-    """Shares of the duration after the change: rising, 0 and 1 where they were, and g(u + 1) = g(u) + 1."""
-    sizes, phases = pace
-    waves = 2 * np.pi * np.arange(1, _WAVES + 1)
-    swing = np.sin(np.multiply.outer(u, waves) + phases) - np.sin(phases)
-    return np.asarray(u + swing @ (sizes / waves))
+def _bent(piece: Piece, skew: float) -> Piece:
+    return replace(piece, skew=skew) if isinstance(piece, Actionlet) else piece
 
 
 def _groups(score: Score, groups: Sequence[Collection[str]] | None) -> list[list[str]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,8 +17,9 @@ from gmr.actionlets.actions.performance import Performance
 from gmr.actionlets.actions.plan import Plan, performed
 from gmr.actionlets.actions.timeline import MOST_SECONDS, Profile, Timeline, chosen_parameters
 from gmr.actionlets.actions.units import SIDES, ActionUnit, Parameter
-from gmr.actionlets.actions.unrolling import all_knots, intervals, labelled
-from gmr.actionlets.actions.variation import Pool, varied
+from gmr.actionlets.actions.unrolling import Unrolled
+from gmr.actionlets.actions.variation import Pool, Variable
+from gmr.actionlets.actions.written import Written
 from gmr.errors import ActionletError
 
 if TYPE_CHECKING:
@@ -163,18 +165,19 @@ class SingleAction(Action):
         begins: float | None = None,
     ) -> Plan:
         """What is to be done when."""
-        who = varied(self.unit, self.courses, self.ranges, self.pool, seed, variation)
-        unit = who.unit if begins is None else replace(who.unit, begins=begins)
-        lasts = self._seconds(seconds, unit, chosen, who.tempo)
-        timeline = Timeline.of(unit, chosen, lasts, who.tempo)
+        change = self._variable.varied(seed, variation)
+        unit = self.unit if begins is None else replace(self.unit, begins=begins)
+        lasts = self._seconds(seconds, unit, chosen, change.tempo)
+        timeline = Timeline.of(unit, chosen, lasts, change.tempo)
+        unrolled = Unrolled(self._written, change, timeline)
         return Plan(
             seconds=lasts,
-            knots=all_knots(who.courses, timeline, self.ranges, self.factors),
-            contacts={side: intervals(spans, timeline) for side, spans in unit.contacts.items()},
+            knots=unrolled.knots(),
+            contacts=unrolled.contacts(),
             speed=_profile(timeline, "speed", 1.0, lasts),
             turn_rate=_profile(timeline, "turn_rate", float(np.radians(1.0)), lasts),
             travel=unit.travel,
-            labels=labelled(unit.labels, timeline, lasts),
+            labels=unrolled.labels(lasts),
             phase=float(np.interp(lasts, timeline.times, timeline.phase)) if unit.cyclic else None,
         )
 
@@ -187,6 +190,14 @@ class SingleAction(Action):
                 first, last = float(begin.at(values)), float(end.at(values))
                 row |= (phases - first) % 1.0 <= last - first
         return found
+
+    @cached_property
+    def _written(self) -> Written:
+        return Written.of(self.unit, self.courses, self.ranges, self.factors)
+
+    @cached_property
+    def _variable(self) -> Variable:
+        return Variable.of(self.unit, self._written, self.ranges, self.pool)
 
     def _seconds(
         self, asked: float | None, unit: ActionUnit, chosen: Mapping[str, Profile], tempo: float

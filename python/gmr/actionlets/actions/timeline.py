@@ -11,14 +11,15 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from gmr.actionlets.actions.many_values import Values, within
 from gmr.actionlets.actions.tables import nearest
 from gmr.actionlets.actions.units import LEAN, ActionUnit, Parameter
-from gmr.actionlets.actions.values import Value, monotone
+from gmr.actionlets.actions.values import monotone
 from gmr.errors import ActionletError
 
-__all__ = ["MOST_SECONDS", "Profile", "Timeline", "chosen_parameters"]
+__all__ = ["MOST_SECONDS", "Moments", "Profile", "Timeline", "chosen_parameters"]
 
 Floats = NDArray[np.float64]
 
@@ -30,6 +31,28 @@ MOST_SECONDS: Final = 36_000.0
 
 _STEP: Final = 1 / 60
 _GRAVITY: Final = 9.81
+
+
+@dataclass(frozen=True, eq=False)
+class Moments:
+    """When N phases are reached.
+
+    Args:
+        bounds: (N + 1,) where the moments of each begin; K at the end.
+        owner: (K,) the number of the phase.
+        cycles: (K,) the number of the cycle.
+        seconds: (K,)
+    """
+
+    bounds: NDArray[np.int64]
+    owner: NDArray[np.int64]
+    cycles: NDArray[np.int64]
+    seconds: Floats
+
+    def of(self, number: int) -> dict[int, float]:
+        """The seconds when one phase is reached, by the number of the cycle."""
+        own = slice(self.bounds[number], self.bounds[number + 1])
+        return dict(zip(self.cycles[own].tolist(), self.seconds[own].tolist(), strict=True))
 
 
 @dataclass(frozen=True)
@@ -72,24 +95,41 @@ class Timeline:
         steady = None if changes else {name: float(values[0]) for name, values in parameters.items()}
         return cls(times, phase, parameters, action.cyclic, steady)
 
-    def moments(self, phase: Value) -> tuple[NDArray[np.int64], Floats]:
-        """When a phase that may follow the parameters is reached: numbers of cycles, and the seconds."""
-        asked = phase.at(self.steady or self.parameters) if phase.curves else phase.base
-        ahead = self.phase - asked
-        if self.steady is None and not (np.diff(ahead) > 0).all():
-            # While a parameter changes fast, a phase that follows it may run ahead of time; it is met once.
-            ahead = np.maximum.accumulate(ahead + 1e-9 * np.arange(len(ahead)))
-        first, last = (np.ceil(ahead[0]), np.floor(ahead[-1])) if self.is_cyclic else (0.0, 0.0)
-        cycles = np.arange(int(first), int(last) + 1)
-        return cycles, np.interp(cycles, ahead, self.times)
+    def moments(self, phases: Values, shift: Floats) -> Moments:
+        """When each of some phases, put off by ``shift`` (N,), is reached in every cycle."""
+        asked = shift + (phases.base if self.steady is None else phases.all_at(self.steady))
+        begins, ends = self.phase[0] - asked, self.phase[-1] - asked
+        numbers = phases.following if self.steady is None else []
+        following = {number: self._ahead(phases, number, shift[number]) for number in numbers}
+        for number, ahead in following.items():
+            begins[number], ends[number] = ahead[0], ahead[-1]
+        first, counts = np.zeros(len(asked), np.int64), np.ones(len(asked), np.int64)
+        if self.is_cyclic:
+            first = np.ceil(begins).astype(np.int64)
+            counts = np.maximum(np.floor(ends).astype(np.int64) - first + 1, 0)
+        owner = np.repeat(np.arange(len(asked)), counts)
+        cycles = first[owner] + within(counts)
+        seconds = np.interp(cycles + asked[owner], self.phase, self.times)
+        bounds = np.concatenate([[0], np.cumsum(counts)])
+        for number, ahead in following.items():
+            own = slice(bounds[number], bounds[number + 1])
+            seconds[own] = np.interp(cycles[own], ahead, self.times)
+        return Moments(bounds, owner, cycles, seconds)
 
-    def values(self, of: Sequence[Value], times: Floats) -> list[Floats]:
-        """Values at times, each (n,)."""
-        names = frozenset[str]().union(*(value.parameters for value in of))
-        parameters: Mapping[str, ArrayLike] = self.steady or {
-            name: np.interp(times, self.times, self.parameters[name]) for name in names
-        }
-        return [np.broadcast_to(value.at(parameters), times.shape) for value in of]
+    def _ahead(self, phases: Values, number: int, shift: float) -> Floats:
+        """(n,) cycles by which the timeline is ahead of a phase that follows the parameters."""
+        which = np.full(len(self.times), number)
+        ahead = self.phase - phases.at(which, self.parameters) - shift
+        if (np.diff(ahead) > 0).all():
+            return ahead
+        # While a parameter changes fast, a phase that follows it may run ahead of time; it is met once.
+        return np.maximum.accumulate(ahead + 1e-9 * np.arange(len(ahead)))
+
+    def values(self, of: Values, which: NDArray[np.intp], times: Floats) -> Floats:
+        """(K,) the values of the numbers ``which`` (K,) at times (K,)."""
+        if self.steady is not None:
+            return of.all_at(self.steady)[which]
+        return of.at(which, {name: np.interp(times, self.times, self.parameters[name]) for name in of.names})
 
 
 def _grid(seconds: float, margin: float) -> Floats:

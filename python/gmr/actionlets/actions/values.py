@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Curve", "Value", "monotone"]
+__all__ = ["Curve", "Value", "hermite", "monotone", "prepared"]
 
 Floats = NDArray[np.float64]
 
@@ -99,21 +99,31 @@ def monotone(at: Iterable[float], gives: Iterable[float], x: ArrayLike) -> Float
     Source: Fritsch & Butland (1984), the weighted harmonic mean of neighbouring slopes, in SciPy's
     ``PchipInterpolator`` too; here with level ends where a curve goes on level.
     """
-    points, values, steps, slopes = _prepared(tuple(at), tuple(gives))
+    points, values, steps, slopes = prepared(tuple(at), tuple(gives))
     asked = np.clip(np.asarray(x, dtype=np.float64), points[0], points[-1])
     piece = np.clip(np.searchsorted(points, asked, side="right") - 1, 0, len(steps) - 1)
-    step, share = steps[piece], (asked - points[piece]) / steps[piece]
+    share = (asked - points[piece]) / steps[piece]
+    return hermite(share, steps[piece], values[piece], values[piece + 1], slopes[piece], slopes[piece + 1])
+
+
+def hermite(share: Floats, step: Floats, begin: Floats, end: Floats, rise: Floats, fall: Floats) -> Floats:
+    """The cubic from ``begin``, with the slope ``rise`` there, to ``end`` with the slope ``fall``.
+
+    Args:
+        share: of the step that is behind, 0 to 1.
+        step: from the one to the other.
+    """
     rest = 1 - share
     result: Floats = (
-        values[piece] * (1 + 2 * share) * rest**2
-        + values[piece + 1] * (3 - 2 * share) * share**2
-        + step * share * rest * (slopes[piece] * rest - slopes[piece + 1] * share)
+        begin * (1 + 2 * share) * rest**2
+        + end * (3 - 2 * share) * share**2
+        + step * share * rest * (rise * rest - fall * share)
     )
     return result
 
 
 @lru_cache(maxsize=4096)
-def _prepared(at: tuple[float, ...], gives: tuple[float, ...]) -> tuple[Floats, Floats, Floats, Floats]:
+def prepared(at: tuple[float, ...], gives: tuple[float, ...]) -> tuple[Floats, Floats, Floats, Floats]:
     """Points, values, steps between the points, slopes at them."""
     points, values = np.array(at, dtype=np.float64), np.array(gives, dtype=np.float64)
     steps = np.diff(points)

@@ -8,43 +8,33 @@ the left one it goes on doing.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.actionlets.actionlet import Actionlet
 from gmr.actionlets.actions.parts import Courses
-from gmr.actionlets.actions.units import ActionUnit, Extreme
-from gmr.actionlets.actions.values import Value
-from gmr.actionlets.mutation import mutate, substituted
+from gmr.actionlets.actions.units import ActionUnit
+from gmr.actionlets.actions.written import Written, defaults
+from gmr.actionlets.choices import Choices
+from gmr.actionlets.mutable import Mutable
 from gmr.actionlets.score import Score
 from gmr.actionlets.track import Piece, Track
 
-__all__ = ["Pool", "Variation", "varied"]
+__all__ = ["Pool", "Variable", "Variation"]
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
 
 _MOST: Final = 0.6
 """Amount of the mutation that a variation of 1 asks for: beyond it steps stumble."""
 _OWN: Final = 0.25
 """Share by which the sides differ, of what both change."""
-
-
-@dataclass(frozen=True)
-class Variation:
-    """An action as somebody does it.
-
-    Args:
-        tempo: what its period or duration is multiplied with.
-    """
-
-    unit: ActionUnit
-    courses: Courses
-    tempo: float = 1.0
+_SHARE: Final = 0.45
+"""Of the way to its neighbour that an extreme moves at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,89 +52,127 @@ class Pool:
         """All that move, by the degree of freedom without its side."""
         found: dict[str, list[Piece]] = {}
         for unit, courses in self.written:
+            given = defaults(unit)
             for dof, course in courses.items():
-                track = _track(_rows(course, _defaults(unit)), unit.cyclic)
+                rows = [[float(value.at(given)) for value in (e.phase, e.angle, e.skew)] for e in course]
+                track = _track(np.array(rows), unit.cyclic)
                 moving = [piece for piece in track.pieces if piece.travel]
                 found.setdefault(_sideless(dof), []).extend(dict.fromkeys(moving))
         return {dof: tuple(pieces) for dof, pieces in found.items()}
 
 
+@dataclass(frozen=True, eq=False)
+class Variation:
+    """How somebody does an action: what is changed in its E extremes and S phases.
+
+    Args:
+        tempo: what its period or duration is multiplied with.
+        shift: (S,) what is added to each phase.
+        neighbour: (E,) the number of the extreme towards which each moves.
+        towards: (E,) by which share of the way.
+        tilt: (E,) what is added to the skew.
+    """
+
+    tempo: float
+    shift: Floats
+    neighbour: Ints
+    towards: Floats
+    tilt: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Variable:
+    """What variations of an action start from: one cycle of it, where nobody chooses the parameters.
+
+    Args:
+        cycle: as a score of one second.
+        choices: pieces of other actions of the same types as those of the cycle.
+        place: (E,) for each extreme of the action, which of the cycle it is.
+        end: (E,) the piece that ends there.
+        neighbour: (E,) of the two extremes beside it the one that is nearer, but not as high.
+        way: (E,) how far it is there.
+        partner: (E,) the extreme of the left limb from which it takes most of its changes; itself for others.
+        warped: (N,) phases at which the times of the cycle's extremes are told.
+        phases: (S,) the action's, within the cycle.
+    """
+
+    cycle: Mutable
+    choices: Choices
+    place: Ints
+    end: Ints
+    neighbour: Ints
+    way: Floats
+    partner: Ints
+    warped: Floats
+    phases: Floats
+
+    @classmethod
+    def of(
+        cls, unit: ActionUnit, written: Written, ranges: Mapping[str, tuple[float, float]], pool: Pool
+    ) -> Variable:
+        """Of an action.
+
+        Args:
+            ranges: by degree of freedom, in the file's units.
+            pool: where velocity functions of other actionlets come from.
+        """
+        rows = written.rows(unit)
+        score = Score({dof: _track(one, unit.cyclic) for dof, one in rows.items()})
+        cycle = Mutable.of(score, ranges)
+        others = {dof: pool.pieces.get(_sideless(dof), ()) for dof in written.dofs}
+        neighbour = np.concatenate([_neighbours(one[:, 1]) for one in rows.values()])
+        neighbour += np.repeat(written.first[:-1], np.diff(written.first))
+        place, end = _places(rows, score, unit.cyclic)
+        angles = np.concatenate([one[:, 1] for one in rows.values()])
+        inside = cycle.times[(cycle.times >= 0) & (cycle.times <= 1)]
+        phases = written.phases.at(np.arange(len(written.phases)), defaults(unit))
+        return cls(
+            cycle=cycle,
+            choices=Choices.of(score, others),
+            place=place,
+            end=end,
+            neighbour=neighbour,
+            way=angles[neighbour] - angles,
+            partner=_partners(written, neighbour),
+            warped=np.unique([*inside, 0.0, 1.0]),
+            phases=np.where((phases >= 0) & (phases <= 1), phases, phases % 1.0),
+        )
+
+    def varied(self, seed: int, amount: float) -> Variation:
+        """The action as the performer ``seed`` does it.
+
+        Args:
+            seed: any whole number; each tells a performer, whoever else there is.
+            amount: 0 (as written) to 1. Skews go that way towards those of other actionlets of their type.
+        """
+        if amount == 0:
+            none = np.zeros(len(self.way))
+            return Variation(1.0, np.zeros(len(self.phases)), self.neighbour, none, none)
+        rng = np.random.default_rng(seed % 2**64)
+        mutant = self.cycle.changed(rng, _MOST * amount)
+        old, new = self.cycle.skews[self.end], mutant.skews[self.end]
+        tilt = new - old + amount * (self._swapped(rng)[self.end] - old)
+        moved = mutant.extremes[self.place] - self.cycle.extremes[self.place]
+        towards = np.divide(moved, self.way, out=np.zeros(len(moved)), where=np.abs(self.way) > 1e-9)
+        towards = np.clip(towards, -_SHARE, _SHARE)
+        return Variation(
+            mutant.tempo,
+            np.interp(self.phases, self.warped, mutant.pace.warped(self.warped) - self.warped),
+            self.neighbour,
+            (1 - _OWN) * towards[self.partner] + _OWN * towards,
+            (1 - _OWN) * tilt[self.partner] + _OWN * tilt,
+        )
+
+    def _swapped(self, rng: np.random.Generator) -> Floats:
+        """(P,) skews of the cycle's pieces with the velocity functions of others."""
+        drawn = self.choices.drawn(rng)
+        found = self.cycle.skews.copy()
+        found[drawn >= 0] = self.choices.skews[drawn[drawn >= 0]]
+        return found
+
+
 def _sideless(dof: str) -> str:
     return dof.removeprefix("left_").removeprefix("right_")
-
-
-def _defaults(unit: ActionUnit) -> dict[str, float]:
-    chosen = {name: parameter.default for name, parameter in unit.parameters.items()}
-    return chosen | dict.fromkeys(unit.derived, 0.0)
-
-
-@dataclass(frozen=True)
-class _Changes:
-    """What is changed in one degree of freedom, by the number of the extreme in the file.
-
-    Args:
-        neighbour: (n,) the number of the extreme towards which it moves.
-        towards: (n,) by which share of the way.
-        skew: (n,) what is added to the skew.
-    """
-
-    neighbour: NDArray[np.intp]
-    towards: Floats
-    skew: Floats
-
-
-def varied(
-    unit: ActionUnit,
-    courses: Courses,
-    ranges: Mapping[str, tuple[float, float]],
-    pool: Pool,
-    seed: int,
-    amount: float,
-) -> Variation:
-    """The action as the performer ``seed`` does it; as written where ``amount`` is 0.
-
-    Args:
-        ranges: by degree of freedom, in the file's units.
-        pool: the skew of each actionlet goes the way ``amount`` towards that of another of its type in here.
-        seed: any whole number; each tells a performer, whoever else there is.
-        amount: 0 to 1.
-    """
-    if amount == 0:
-        return Variation(unit, courses)
-    defaults = _defaults(unit)
-    rows = {dof: _rows(course, defaults) for dof, course in courses.items()}
-    cycle = Score({dof: _track(one, unit.cyclic) for dof, one in rows.items()})
-    rng = np.random.default_rng(seed % 2**64)
-    other = mutate(cycle, rng, _MOST * amount, ranges)
-    swapped = substituted(cycle, {dof: pool.pieces.get(_sideless(dof), ()) for dof in cycle.dofs}, rng)
-    changes = {
-        dof: _changes(one, cycle[dof], other[dof], swapped[dof], amount, unit.cyclic)
-        for dof, one in rows.items()
-    }
-    warp = _Warp.between(cycle, other)
-
-    def moved(phase: Value) -> Value:
-        return phase.plus(Value(warp.shift(float(phase.at(defaults)))))
-
-    return Variation(
-        replace(
-            unit,
-            contacts={
-                side: tuple((moved(begin), moved(end)) for begin, end in spans)
-                for side, spans in unit.contacts.items()
-            },
-            labels={name: (moved(begin), moved(end)) for name, (begin, end) in unit.labels.items()},
-        ),
-        {dof: _applied(course, _common(dof, changes), moved) for dof, course in courses.items()},
-        other.duration,
-    )
-
-
-def _rows(course: Sequence[Extreme], defaults: Mapping[str, float]) -> Floats:
-    """(n, 3) phase, angle and skew of the extremes of one cycle where nobody chooses the parameters."""
-    return np.array(
-        [[value.at(defaults) for value in (e.phase, e.angle, e.skew)] for e in course], np.float64
-    )
 
 
 def _track(rows: Floats, is_cyclic: bool) -> Track:
@@ -162,80 +190,36 @@ def _later(rows: Floats, phase: float) -> Floats:
     return moved
 
 
-def _changes(
-    rows: Floats, before: Track, after: Track, swapped: Track, amount: float, is_cyclic: bool
-) -> _Changes:
-    """What mutation did to each extreme of a track, and the way ``amount`` to other velocity functions."""
-    angles = rows[:, 1]
-    phases = rows[:, 0] % 1.0 if is_cyclic else rows[:, 0]
-    places = np.abs(before.times - phases[:, None]).argmin(axis=1)
-    moved = after.extremes[places] - before.extremes[places]
-    # The piece that ends at the first extreme is the last one of the cycle before.
-    ends = np.where(places > 0, places - 1, len(before.pieces) - 1 if is_cyclic else 0)
-    old, new, others = (np.array([_skew(track, end) for end in ends]) for track in (before, after, swapped))
-    tilts = new - old + amount * (others - old)
-    ways = np.abs(angles[:, None] - np.stack([np.roll(angles, 1), np.roll(angles, -1)], axis=1))
-    back = ways[:, 0] < ways[:, 1]
-    numbers = np.arange(len(rows))
-    neighbour = np.where(back, np.roll(numbers, 1), np.roll(numbers, -1))
-    way = angles[neighbour] - angles
-    share = np.divide(moved, way, out=np.zeros(len(rows)), where=np.abs(way) > 1e-9)
-    return _Changes(neighbour, np.clip(share, -0.45, 0.45), tilts)
+def _neighbours(angles: Floats) -> Ints:
+    """(n,) the number of the nearer of the two extremes beside each; of two as near, the one after it."""
+    numbers = np.arange(len(angles))
+    before, after = np.roll(numbers, 1), np.roll(numbers, -1)
+    return np.where(np.abs(angles - angles[before]) < np.abs(angles - angles[after]), before, after)
 
 
-def _skew(track: Track, place: int) -> float:
-    piece = track.pieces[place]
-    return piece.skew if isinstance(piece, Actionlet) else 0.5
+def _places(rows: Mapping[str, Floats], cycle: Score, is_cyclic: bool) -> tuple[Ints, Ints]:
+    """For each extreme of an action, which extreme of the cycle it is, and which piece ends there."""
+    places, ends, pieces = [], [], 0
+    for number, (dof, one) in enumerate(rows.items()):
+        track = cycle[dof]
+        phases = one[:, 0] % 1.0 if is_cyclic else one[:, 0]
+        place = np.abs(track.times - phases[:, None]).argmin(axis=1)
+        # The piece that ends at the first extreme is the last one of the cycle before.
+        end = np.where(place > 0, place - 1, len(track.pieces) - 1 if is_cyclic else 0)
+        places.append(place + pieces + number)
+        ends.append(end + pieces)
+        pieces += len(track.pieces)
+    return np.concatenate(places), np.concatenate(ends)
 
 
-def _common(dof: str, changes: Mapping[str, _Changes]) -> _Changes:
-    """The changes of a degree of freedom; a right limb takes most of them from the left one."""
-    own = changes[dof]
-    other = changes.get("left_" + dof.removeprefix("right_")) if dof.startswith("right_") else None
-    if other is None or not np.array_equal(other.neighbour, own.neighbour):
-        return own
-    return _Changes(
-        own.neighbour,
-        (1 - _OWN) * other.towards + _OWN * own.towards,
-        (1 - _OWN) * other.skew + _OWN * own.skew,
-    )
-
-
-def _applied(
-    course: Sequence[Extreme], changes: _Changes, moved: Callable[[Value], Value]
-) -> tuple[Extreme, ...]:
-    found = []
-    for extreme, neighbour, share, tilt in zip(
-        course, changes.neighbour.tolist(), changes.towards.tolist(), changes.skew.tolist(), strict=True
-    ):
-        angle = extreme.angle.scaled(1 - share).plus(course[neighbour].angle.scaled(share))
-        found.append(Extreme(moved(extreme.phase), angle, extreme.skew.plus(Value(tilt))))
-    return tuple(found)
-
-
-@dataclass(frozen=True)
-class _Warp:
-    """How a mutation moved phases.
-
-    Args:
-        at: (n,) phases, rising.
-        shifts: (n,) what was added to each.
-    """
-
-    at: Floats
-    shifts: Floats
-
-    @classmethod
-    def between(cls, before: Score, after: Score) -> _Warp:
-        """From where pieces of all tracks begin and end."""
-        at = np.concatenate([before[dof].times for dof in before.dofs])
-        new = np.concatenate([after[dof].times for dof in before.dofs]) / after.duration
-        inside = (at >= 0) & (at <= 1)
-        at, new = np.append(at[inside], [0.0, 1.0]), np.append(new[inside], [0.0, 1.0])
-        at, first = np.unique(at, return_index=True)
-        return cls(at, new[first] - at)
-
-    def shift(self, phase: float) -> float:
-        """What is added to a phase; the same in every cycle."""
-        inside = phase if 0 <= phase <= 1 else phase % 1.0
-        return float(np.interp(inside, self.at, self.shifts))
+def _partners(written: Written, neighbour: Ints) -> Ints:
+    """(E,) the extreme of the left limb for one of the right that moves the same way; itself for others."""
+    found = np.arange(len(neighbour))
+    spans = dict(zip(written.dofs, zip(written.first[:-1], written.first[1:], strict=True), strict=True))
+    for dof, (first, last) in spans.items():
+        start, end = spans.get("left_" + dof.removeprefix("right_"), (0, 0))
+        if dof.startswith("right_") and np.array_equal(
+            neighbour[first:last] - first, neighbour[start:end] - start
+        ):
+            found[first:last] = np.arange(start, end)
+    return found
