@@ -6,9 +6,9 @@
 use super::arrangement::{Arrangement, Follows, Run, WIDEST, WINDOW};
 use super::blend::{Frame, Hemisphere, Method, Work};
 use super::bones::Bones;
-use super::formulas::{add, move_by, subtract, transform, transform_normal, turn_by};
+use super::methods::{Blending, Centers, Linear, Pivot, Rest, Running};
 use super::skin::{Points, Skin, Wide};
-use super::sums::{At, Each, Influences, MANY, Rows, Same, dual_quaternion, matrix};
+use super::sums::{At, Each, Influences, MANY, Same};
 use crate::lanes::{Kernel, Lanes, cache};
 
 /// The vertices of `work`, in each of some frames.
@@ -78,11 +78,13 @@ fn each_window<L: Lanes<Real = f32>, M: Blending>(windows: Windows<'_, '_>) {
     for (start, runs) in work.windows() {
         let end = work.skin.vertex_count.min(start + WINDOW);
         let place = 3 * (start - work.first_vertex())..3 * (end - work.first_vertex());
-        for Frame { bones, positions, normals } in &mut *frames {
+        for (k, Frame { bones, positions, normals }) in frames.iter_mut().enumerate() {
+            // Later frames find near what the first has brought.
+            let window = Window { work, bones, start, is_far: k == 0 };
             match normals {
-                None => blend_runs::<L, M, false>(work, bones, start, runs, &mut room),
+                None => blend_runs::<L, M, false>(window, runs, &mut room),
                 Some(normals) => {
-                    blend_runs::<L, M, true>(work, bones, start, runs, &mut room);
+                    blend_runs::<L, M, true>(window, runs, &mut room);
                     put(&room.answers.normals, &mut room.packed, &mut normals[place.clone()], work.is_large);
                 }
             }
@@ -118,218 +120,104 @@ fn pack(answers: &[[f32; 4]], out: &mut [f32]) {
     }
 }
 
+/// A window in a frame.
+#[derive(Clone, Copy)]
+pub(super) struct Window<'a> {
+    pub(super) work: &'a Work<'a>,
+    pub(super) bones: &'a Bones,
+    /// The first vertex.
+    pub(super) start: usize,
+    /// Whether it is yet to be fetched.
+    is_far: bool,
+}
+
 #[inline(always)]
 fn blend_runs<L: Lanes<Real = f32>, M: Blending, const NORMALS: bool>(
-    work: &Work<'_>,
-    bones: &Bones,
-    start: usize,
+    window: Window<'_>,
     runs: &[Run],
     room: &mut Room,
 ) {
     let Room { answers, same, sums, signed, .. } = room;
+    let Window { work, bones, .. } = window;
     let Arrangement { shared, own, .. } = &work.skin.arrangement;
+    let (shared_dual, own_dual) = match M::IS_PAIRED {
+        true => (&shared.paired, &own.paired),
+        false => (&shared.joints, &own.joints),
+    };
     for run in runs {
-        let part = Part { work, bones, run, start };
         let count = run.influence_count;
         match run.follows {
             Follows::Same(start) => {
-                let dual_joints = if M::IS_PAIRED { &shared.paired } else { &shared.joints };
-                same.pick(bones, &shared.joints[start..][..count], &dual_joints[start..][..count]);
-                part.blend::<L, M, _, NORMALS>(&mut *same, signed, answers);
+                same.pick(bones, &shared.joints[start..][..count], &shared_dual[start..][..count]);
+                blend_run::<L, M, _, NORMALS>(window, run, &mut *same, signed, answers);
             }
             Follows::Each(start) => {
                 let joints = &own.joints[start..][..count * run.block_count()];
-                let dual_joints = if M::IS_PAIRED { &own.paired } else { &own.joints };
-                let dual_joints = &dual_joints[start..][..count * run.block_count()];
+                let dual_joints = &own_dual[start..][..count * run.block_count()];
                 if count == FEW {
                     let influences = Each::<FEW> { bones, joints, dual_joints, sums };
-                    part.blend::<L, M, _, NORMALS>(influences, signed, answers);
+                    blend_run::<L, M, _, NORMALS>(window, run, influences, signed, answers);
                 } else {
                     let influences = Each::<MANY> { bones, joints, dual_joints, sums };
-                    part.blend::<L, M, _, NORMALS>(influences, signed, answers);
+                    blend_run::<L, M, _, NORMALS>(window, run, influences, signed, answers);
                 }
             }
         }
     }
 }
 
-/// A run in a frame.
-#[derive(Clone, Copy)]
-struct Part<'a> {
-    work: &'a Work<'a>,
-    bones: &'a Bones,
-    run: &'a Run,
-    /// The first vertex of the window.
-    start: usize,
-}
-
-impl Part<'_> {
-    #[inline(always)]
-    fn blend<L: Lanes<Real = f32>, M: Blending, I: Influences<L>, const NORMALS: bool>(
-        self,
-        mut influences: I,
-        signed: &mut [Wide],
-        answers: &mut Answers,
-    ) {
-        let Self { work, bones, run, .. } = self;
-        let (skin, count) = (work.skin, run.influence_count);
-        let is_stretched = !bones.residual.is_empty();
-        for block in 0..run.block_count() {
-            let place = run.block + block;
-            let weights = &skin.weights[run.weights + block * count..][..count];
-            let signed = M::signed(self, block, weights, signed);
-            let places = &skin.arrangement.places[place];
-            // Lanes behind the last vertex repeat it.
-            let end = WIDEST.min(run.length - WIDEST * block);
-            for lane in (0..end).step_by(L::WIDTH) {
-                let at = At { block, weights, signed, lane };
-                let v = points(&skin.positions[place], lane);
-                let n = if NORMALS { points(&skin.normals[place], lane) } else { v };
-                let center = if M::ABOUT_CENTERS { points(&work.centers[place], lane) } else { v };
-                let rest = Rest { v, n, center, is_stretched };
-                let (v, n) = M::blend::<L, I, NORMALS>(&mut influences, at, rest);
-                L::scatter_columns([v[0], v[1], v[2], v[2]], &mut answers.positions, &places[lane..]);
-                if NORMALS {
-                    L::scatter_columns([n[0], n[1], n[2], n[2]], &mut answers.normals, &places[lane..]);
-                }
+#[inline(always)]
+fn blend_run<L: Lanes<Real = f32>, M: Blending, I: Influences<L>, const NORMALS: bool>(
+    window: Window<'_>,
+    run: &Run,
+    mut influences: I,
+    signed: &mut [Wide],
+    answers: &mut Answers,
+) {
+    let Window { work, bones, is_far, .. } = window;
+    let (skin, count) = (work.skin, run.influence_count);
+    let is_stretched = !bones.residual.is_empty();
+    for block in 0..run.block_count() {
+        let place = run.block + block;
+        let first = run.weights + block * count;
+        if is_far {
+            fetch(skin.positions.as_flattened(), 3 * place, 3);
+            fetch(&skin.weights, first, count);
+            if NORMALS {
+                fetch(skin.normals.as_flattened(), 3 * place, 3);
+            }
+        }
+        let weights = &skin.weights[first..][..count];
+        let signed = M::signed(window, run, block, signed);
+        let signed = signed.unwrap_or(weights);
+        let places = &skin.arrangement.places[place];
+        // Lanes behind the last vertex repeat it.
+        let end = WIDEST.min(run.length - WIDEST * block);
+        for lane in (0..end).step_by(L::WIDTH) {
+            let at = At { block, weights, signed, lane };
+            let v = points(&skin.positions[place], lane);
+            let n = if NORMALS { points(&skin.normals[place], lane) } else { v };
+            let center = if M::ABOUT_CENTERS { points(&work.centers[place], lane) } else { v };
+            let rest = Rest { v, n, center, is_stretched };
+            let (v, n) = M::blend::<L, I, NORMALS>(&mut influences, at, rest);
+            L::scatter_columns([v[0], v[1], v[2], v[2]], &mut answers.positions, &places[lane..]);
+            if NORMALS {
+                L::scatter_columns([n[0], n[1], n[2], n[2]], &mut answers.normals, &places[lane..]);
             }
         }
     }
+}
+
+/// Blocks that are fetched before they are needed, across the bounds of runs and windows.
+const AHEAD: usize = 8;
+
+/// Fetches what lies [`AHEAD`] blocks behind what a block holds: `count` lines of `lines` from `start` on.
+#[inline(always)]
+fn fetch(lines: &[Wide], start: usize, count: usize) {
+    cache::prefetch(lines, start + AHEAD * count, count);
 }
 
 #[inline(always)]
 fn points<L: Lanes<Real = f32>>([x, y, z]: &Points, lane: usize) -> [L; 3] {
     [L::load(&x.0[lane..]), L::load(&y.0[lane..]), L::load(&z.0[lane..])]
-}
-
-/// What stays of the vertices of a register.
-#[derive(Clone, Copy)]
-struct Rest<L> {
-    v: [L; 3],
-    n: [L; 3],
-    center: [L; 3],
-    /// Whether any joint scales or shears in this frame.
-    is_stretched: bool,
-}
-
-/// A method.
-trait Blending {
-    /// Whether there are centres of rotation.
-    const ABOUT_CENTERS: bool = false;
-
-    /// Whether there is a dual quaternion for each pair of a pivot and a joint.
-    const IS_PAIRED: bool = true;
-
-    /// The weights of a block, with the signs that the rows take.
-    #[inline(always)]
-    fn signed<'a>(
-        _part: Part<'_>,
-        _block: usize,
-        weights: &'a [Wide],
-        _signed: &'a mut [Wide],
-    ) -> &'a [Wide] {
-        weights
-    }
-
-    /// The vertices and their normals, blended.
-    fn blend<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
-        influences: &mut I,
-        at: At<'_>,
-        rest: Rest<L>,
-    ) -> ([L; 3], [L; 3]);
-}
-
-struct Linear;
-struct Pivot;
-struct Running;
-struct Centers;
-
-impl Blending for Linear {
-    #[inline(always)]
-    fn blend<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
-        influences: &mut I,
-        at: At<'_>,
-        rest: Rest<L>,
-    ) -> ([L; 3], [L; 3]) {
-        let m = matrix(influences, Rows::Linear, at);
-        (transform(&m, rest.v), if NORMALS { transform_normal(&m, rest.n) } else { rest.n })
-    }
-}
-
-impl Blending for Pivot {
-    #[inline(always)]
-    fn blend<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
-        influences: &mut I,
-        at: At<'_>,
-        rest: Rest<L>,
-    ) -> ([L; 3], [L; 3]) {
-        let (v, n) = stretched::<L, I, NORMALS>(influences, at, rest.v, rest);
-        let q = dual_quaternion(influences, at);
-        (move_by(q, v), if NORMALS { turn_by(q[0], n) } else { n })
-    }
-}
-
-impl Blending for Running {
-    const IS_PAIRED: bool = false;
-
-    #[inline(always)]
-    fn signed<'a>(part: Part<'_>, block: usize, weights: &'a [Wide], signed: &'a mut [Wide]) -> &'a [Wide] {
-        let Part { work, run, bones, start } = part;
-        let Arrangement { shared, own, .. } = &work.skin.arrangement;
-        let first = work.skin.lane(start, run, WIDEST * block).signing(&bones.dual);
-        match run.follows {
-            Follows::Same(at) => {
-                let joints = &shared.joints[at..][..weights.len()];
-                first.sign_block(|k, _| joints[k], signed);
-            }
-            Follows::Each(at) => {
-                let joints = &own.joints[at + block * weights.len()..][..weights.len()];
-                first.sign_block(|k, lane| joints[k][lane], signed);
-            }
-        }
-        &signed[..weights.len()]
-    }
-
-    #[inline(always)]
-    fn blend<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
-        influences: &mut I,
-        at: At<'_>,
-        rest: Rest<L>,
-    ) -> ([L; 3], [L; 3]) {
-        let (v, n) = stretched::<L, I, NORMALS>(influences, at, rest.v, rest);
-        let q = dual_quaternion(influences, at);
-        (move_by(q, v), if NORMALS { turn_by(q[0], n) } else { n })
-    }
-}
-
-impl Blending for Centers {
-    const ABOUT_CENTERS: bool = true;
-
-    #[inline(always)]
-    fn blend<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
-        influences: &mut I,
-        at: At<'_>,
-        rest: Rest<L>,
-    ) -> ([L; 3], [L; 3]) {
-        let arm = subtract(rest.v, rest.center);
-        let (arm, n) = stretched::<L, I, NORMALS>(influences, at, arm, rest);
-        let m = matrix(influences, Rows::Linear, at);
-        let q = dual_quaternion(influences, at)[0];
-        (add(turn_by(q, arm), transform(&m, rest.center)), if NORMALS { turn_by(q, n) } else { n })
-    }
-}
-
-/// `v` and the normal after scale and shear, where there are any.
-#[inline(always)]
-fn stretched<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
-    influences: &mut I,
-    at: At<'_>,
-    v: [L; 3],
-    rest: Rest<L>,
-) -> ([L; 3], [L; 3]) {
-    if !rest.is_stretched {
-        return (v, rest.n);
-    }
-    let m = matrix(influences, Rows::Residual, at);
-    (transform(&m, v), if NORMALS { transform_normal(&m, rest.n) } else { rest.n })
 }

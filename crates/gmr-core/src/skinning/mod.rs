@@ -44,6 +44,7 @@ mod bones;
 mod centers;
 mod error;
 mod formulas;
+mod methods;
 mod polar;
 mod running;
 mod scalar;
