@@ -42,11 +42,12 @@ def share(u: Floats, skew: Floats | float) -> Floats:
 
     s = u - (T/pi) sin(pi u/T) up to T, and u + ((1-T)/pi) sin(pi (u-T)/(1-T)) from there.
     """
-    rising, falling = _halves(u, skew)
     is_up = u <= skew
-    half = np.where(is_up, rising, falling)
+    before = np.where(is_up, 0.0, skew)
+    lasts = np.where(is_up, skew, 1 - skew)
+    half = (u - before) / lasts
     swing = np.sin(np.pi * half) / np.pi
-    found: Floats = np.where(is_up, skew * (half - swing), skew + (1 - skew) * (half + swing))
+    found: Floats = before + lasts * (half + np.where(is_up, -swing, swing))
     return found
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 from gmr.actionlets.actions.performance import Performance
 from gmr.actionlets.body import Body
@@ -39,7 +40,12 @@ def taken(performance: Performance, body: Body | None = None, fps: float = 120.0
     Raises:
         ActionletError: ``fps`` is no rate above 0.
     """
-    who = body or Body.of()
+    who = body or _man()
     found = carried(who, performance.score.sample(fps, who.names), performance, fps)
     motion = posed(who, found.angles, found.root, found.heading, fps, name=performance.action)
     return Take(motion, performance, found)
+
+
+@cache
+def _man() -> Body:
+    return Body.of()

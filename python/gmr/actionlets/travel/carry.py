@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from gmr.actionlets.travel.by_feet import carried_by_feet
 from gmr.actionlets.travel.flight import Flights, falling, flights, taken_up
 from gmr.actionlets.travel.footing import Footing, Standing, footing, with_footprints
-from gmr.actionlets.travel.height import held_up, kept_bend, lowered, room
+from gmr.actionlets.travel.height import held_up, kept_bend, lowered, passing, room
 from gmr.actionlets.travel.leg import BENT, Placed, place_foot
 from gmr.actionlets.travel.legs import legs_of, pelvis_shift, pelvis_turn, sole_of
 from gmr.actionlets.travel.mass import legs_moment, trunk_moment
@@ -178,9 +178,10 @@ def _upright(both: Sequence[Standing], ground: Floats, heading: Floats, fps: flo
     root = np.zeros((len(ground), 3))
     root[:, ::2] = ground
     heights, loads = np.zeros((len(ground), 2)), np.zeros((len(ground), 2))
+    speed = passing(root, fps)
     for k, stood in enumerate(both):
         one = stood.one
-        bend, hip = _bend(one, root, fps), _hip(one, root, heading)
+        bend, hip = _bend(one, speed), _hip(one, root, heading)
         heights[one.frames, k] = room(stood.law, hip, stood.end, bend, stood.length)
         loads[one.frames, k] = one.loads(fps)
     root[:, 1] = held_up(heights, loads, fps)
@@ -194,19 +195,20 @@ def _hip(one: Footing, root: Floats, heading: Floats) -> Floats:
     return hip
 
 
-def _bend(one: Footing, root: Floats, fps: float) -> Floats:
+def _bend(one: Footing, speed: Floats) -> Floats:
     """(n,) radians by which a leg on the ground stays bent."""
     if not one.leg.rigid:
-        return kept_bend(root, one.over, one.frames, fps)
+        return kept_bend(speed[one.frames], one.over)
     return np.full(len(one.frames), BENT)
 
 
 def _highest(both: Sequence[Standing], root: Floats, heading: Floats, fps: float) -> Floats:
     """(F,) height that the legs on the ground allow the pelvis; inf in flight."""
     highest = np.full(len(root), np.inf)
+    speed = passing(root, fps)
     for stood in both:
         one = stood.one
-        allowed = room(stood.law, _hip(one, root, heading), stood.end, _bend(one, root, fps))
+        allowed = room(stood.law, _hip(one, root, heading), stood.end, _bend(one, speed))
         highest[one.frames] = np.minimum(highest[one.frames], allowed)
     return highest
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from gmr.actionlets.travel.leg import BENT, Law, leg_reach
 from gmr.editing.easing import smooth_above, smooth_step
 
-__all__ = ["held_up", "kept_bend", "lowered", "room"]
+__all__ = ["held_up", "kept_bend", "lowered", "passing", "room"]
 
 Floats = NDArray[np.float64]
 
@@ -46,21 +46,23 @@ def room(law: Law, hip: Floats, end: Floats, bend: Floats, length: Floats | None
     return np.asarray(end[:, 1] - hip[:, 1] + upright, np.float64)
 
 
-def kept_bend(root: Floats, stood: Floats, frames: NDArray[np.intp], fps: float) -> Floats:
+def passing(root: Floats, fps: float) -> Floats:
+    """(F,) metres a second at which a pelvis at (F, 3) places goes over the ground."""
+    if len(root) < 2:
+        return np.zeros(len(root))
+    return np.hypot(np.gradient(root[:, 0]), np.gradient(root[:, 2])) * fps
+
+
+def kept_bend(speed: Floats, stood: Floats) -> Floats:
     """(n,) radians by which the knee of a leg on the ground stays bent, the more the faster the hip passes.
 
     The bend changes by ``1 / (l sin(bend / 2))`` radians with each metre between hip and ankle, so a body
     that goes must not straighten a leg quite, least of all when it lands on it. One that stands may.
 
     Args:
-        root: (F, 3) the pelvis; x and z count.
+        speed: (n,) of the pelvis, metres a second.
         stood: (n,) share of the stance that is over; 1 where the foot did not land.
-        frames: (n,) on the ground.
-        fps: frames a second.
     """
-    if len(root) < 2:
-        return np.full(len(frames), BENT)
-    speed = np.linalg.norm(np.gradient(root[:, ::2], axis=0), axis=1)[frames] * fps
     landing = np.clip(_LANDING * speed - _GOING, 0, _LANDING_MOST) * smooth_step(1 - 2 * stood)
     return np.asarray(BENT + (_GOING - BENT + landing) * smooth_step(speed / _GOES), np.float64)
 

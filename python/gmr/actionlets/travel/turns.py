@@ -13,10 +13,11 @@ Floats = NDArray[np.float64]
 def product(x: Floats, z: Floats, y: Floats) -> Floats:
     """(F, 3, 3) ``Rx(x) Rz(z) Ry(y)`` of (F,) signed angles about the axes in radians."""
     cx, sx, cz, sz, cy, sy = np.cos(x), np.sin(x), np.cos(z), np.sin(z), np.cos(y), np.sin(y)
+    up, aside = sz * cy, sz * sy
     found = np.empty((len(x), 3, 3))
     found[:, 0, 0], found[:, 0, 1], found[:, 0, 2] = cz * cy, -sz, cz * sy
-    found[:, 1, 0], found[:, 1, 1], found[:, 1, 2] = cx * sz * cy + sx * sy, cx * cz, cx * sz * sy - sx * cy
-    found[:, 2, 0], found[:, 2, 1], found[:, 2, 2] = sx * sz * cy - cx * sy, sx * cz, sx * sz * sy + cx * cy
+    found[:, 1, 0], found[:, 1, 1], found[:, 1, 2] = cx * up + sx * sy, cx * cz, cx * aside - sx * cy
+    found[:, 2, 0], found[:, 2, 1], found[:, 2, 2] = sx * up - cx * sy, sx * cz, sx * aside + cx * cy
     return found
 
 
@@ -54,7 +55,7 @@ def pitched(pitch: Floats) -> Floats:
 def turned(matrix: Floats, vector: Floats) -> Floats:
     """(F, 3) vectors ``M v``; one vector (3,) is turned by all matrices."""
     if vector.ndim == 1:
-        return np.asarray(matrix @ vector, np.float64)
+        return np.asarray((matrix.reshape(-1, 3) @ vector).reshape(-1, 3), np.float64)
     return np.asarray((matrix @ vector[:, :, None])[:, :, 0], np.float64)
 
 
