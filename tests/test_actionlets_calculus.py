@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
@@ -74,6 +74,7 @@ def test_a_silence_is_exactly_still(angle: float, duration: float, u: float) -> 
 
 
 @given(st.floats(min_value=0, max_value=1, exclude_min=True, exclude_max=True), shares)
+@example(0.75, 1.904148339345565e-135)
 def test_no_skew_however_extreme_leaves_the_way(skew: float, u: float) -> None:
     one = Actionlet(0.0, 1.0, 1.0, skew)
     assert 0 <= float(one.angle(u)) <= 1
@@ -81,6 +82,7 @@ def test_no_skew_however_extreme_leaves_the_way(skew: float, u: float) -> None:
 
 
 @given(measured)
+@example(Measured([0.0175, 2e-311, 0.0], 0.1))
 def test_a_measured_curve_passes_its_samples_at_rest_at_both_ends(one: Measured) -> None:
     np.testing.assert_allclose(one.angle(one.knots), one.angles, atol=1e-12)
     np.testing.assert_allclose(one.velocity([0.0, one.duration]), 0, atol=1e-12)

@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 
 from gaits import bell, gait, mirrored
 from gmr import editing
-from gmr.actionlets import Body, posing
+from gmr.actionlets import Body, library, posing
 from gmr.actionlets.travel import Carried, Plan, carried
+from gmr.actionlets.travel.sole import yaw_of
+from gmr.actionlets.travel.turns import about_y, pitched
 from gmr.body.joints import find_joints
 from gmr.editing.contacts import slide
 from gmr.errors import ActionletError
@@ -338,3 +340,18 @@ def test_angles_of_another_body_are_refused() -> None:
     broken[3, 0] = np.nan
     with pytest.raises(ActionletError, match=r"neck\.flexion is nan in frame 3"):
         carried(PAPER, broken, plan)
+
+
+@given(st.floats(-3.1, 3.1), st.floats(-3.1, 3.1))
+def test_the_yaw_of_a_foot_is_the_same_however_it_is_pitched(yaw: float, pitch: float) -> None:
+    foot = about_y(np.array([yaw])) @ pitched(np.array([pitch]))
+    np.testing.assert_allclose(yaw_of(foot), yaw, atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", [4059472349530935237, 1, 10])
+def test_a_leg_whose_foot_leaves_the_ground_past_upright_is_not_turned_round(seed: int) -> None:
+    found = library()["walk"].take(seconds=1.5, fps=60, seed=seed, variation=1.0, speed=1.57)
+    turned_by = {
+        name: change for name, change in found.report.corrections_deg.items() if name.endswith("hip.rotation")
+    }
+    assert max(turned_by.values(), default=0.0) < 30

@@ -47,7 +47,9 @@ def share(u: Floats, skew: Floats | float) -> Floats:
     lasts = np.where(is_up, skew, 1 - skew)
     half = (u - before) / lasts
     swing = np.sin(np.pi * half) / np.pi
-    found: Floats = before + lasts * (half + np.where(is_up, -swing, swing))
+    way = before + lasts * (half + np.where(is_up, -swing, swing))
+    # Where nearly nothing or nearly all is behind, the difference of two such numbers may be beyond it.
+    found: Floats = np.clip(way, 0.0, 1.0)
     return found
 
 

@@ -140,7 +140,8 @@ def level_at_the_ends(values: Floats, step: float) -> Floats:
     slopes = np.zeros_like(values)
     before, after = secants[:-1], secants[1:]
     same_way = before * after > 0
-    slopes[1:-1][same_way] = 2 / (1 / before[same_way] + 1 / after[same_way])
+    one, other = before[same_way], after[same_way]
+    slopes[1:-1][same_way] = 2 * one * (other / (one + other))  # no secant, however small, overflows
     return slopes
 
 
