@@ -82,7 +82,7 @@ def test_no_skew_however_extreme_leaves_the_way(skew: float, u: float) -> None:
 
 
 @given(measured)
-@example(Measured([0.0175, 2e-311, 0.0], 0.1))
+@example(Measured(np.array([0.0175, 2e-311, 0.0]), 0.1))
 def test_a_measured_curve_passes_its_samples_at_rest_at_both_ends(one: Measured) -> None:
     np.testing.assert_allclose(one.angle(one.knots), one.angles, atol=1e-12)
     np.testing.assert_allclose(one.velocity([0.0, one.duration]), 0, atol=1e-12)

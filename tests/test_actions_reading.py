@@ -94,7 +94,7 @@ JOINT = '[joint.j]\njoint = "neck"\nflexion = [[0, 0], [0.5, 10]]\n'
         ),
         (
             HEAD + ACTION + '[joint.j]\njoint = "neck"\nflexion = { vigour = [[0, 0], [1, 10]] }\n',
-            ["[action.a] moves dof neck.flexion by the parameter 'vigour'", "does not have"],
+            ["[action.a] moves neck.flexion by the parameter 'vigour'", "does not have"],
         ),
         (
             HEAD + JOINT + ACTION + '[action.a.dofs]\n"neck.flexoin" = 3\n',
@@ -121,6 +121,71 @@ JOINT = '[joint.j]\njoint = "neck"\nflexion = [[0, 0], [0.5, 10]]\n'
             HEAD + JOINT + ACTION + "course.tempo = [[1, 0], [0.5, 1]]\n",
             ["[action.a.course] tempo", "rising from the beginning"],
         ),
+        (
+            HEAD + JOINT + '[action."../../out"]\nperiod = 1\nunits = ["j"]\n',
+            ["[mine.toml] action = '../../out'", "letters, digits, _ and -"],
+        ),
+        (HEAD + JOINT + '[action."a,b"]\nperiod = 1\nunits = ["j"]\n', ["action = 'a,b'", "letters"]),
+        (HEAD + JOINT + '[action.""]\nperiod = 1\nunits = ["j"]\n', ["action = ''", "letters"]),
+        (HEAD + JOINT + ACTION.replace("1", "1e-9"), ["period = 1e-09", "0.01 to 3600"]),
+        (HEAD + JOINT + ACTION.replace("1", "1e300"), ["period = 1e+300", "a number from -1e6 to 1e6"]),
+        (HEAD + JOINT + ACTION.replace("1", "9" * 400), ["period = 9999", "a number from -1e6 to 1e6"]),
+        (HEAD + JOINT + ACTION.replace("1", "9" * 5000), ["this is no TOML", "digits"]),
+        (HEAD + JOINT + ACTION + "begins = 1e300\n", ["begins = 1e+300", "a number from -1e6 to 1e6"]),
+        (HEAD + JOINT + ACTION + "seconds = 1e5\n", ["seconds = 100000.0", "36,000 at most"]),
+        (
+            HEAD + JOINT + ACTION.replace("1", "{ speed = [[0, 1], [1, 2]] }"),
+            ["[action.a] lasts as long as it does by the parameter 'speed'", "does not have"],
+        ),
+        (
+            HEAD + JOINT + ACTION + "contacts = { left = [[0, { sped = [[0, 1], [1, 2]] }]] }\n",
+            ["[action.a] has contacts of the left foot by the parameter 'sped'"],
+        ),
+        (
+            HEAD + JOINT + ACTION + "phases = { up = [0, { sped = [[0, 1], [1, 2]] }] }\n",
+            ["[action.a] has the phase 'up' by the parameter 'sped'"],
+        ),
+        (
+            HEAD + JOINT + ACTION + "course = { speed = [[0, 1]] }\n",
+            ["[action.a] has the course of a parameter 'speed', which it does not have"],
+        ),
+        (HEAD + "[action.a]\nperiod = 1\n", ["[action.a] moves nothing", "give it units"]),
+        (
+            HEAD + JOINT + ACTION + '[action.a.dofs]\n"root.surge" = 1e5\n',
+            ["[action.a] takes root.surge to 100000 m", "-100 to 100 m"],
+        ),
+        (
+            HEAD
+            + JOINT
+            + "".join(f'[group.g{i}]\nunits = ["g{i + 1}"]\n' for i in range(3000))
+            + '[group.g3000]\nunits = ["j"]\n',
+            ["units in units more than 100 deep"],
+        ),
+        (
+            HEAD
+            + JOINT
+            + ACTION
+            + "".join(f'[action.b{i}]\nfrom = "b{i + 1}"\n' for i in range(3000))
+            + '[action.b3000]\nfrom = "a"\n',
+            ["at most 100 names that take from each other in a row"],
+        ),
+        (
+            HEAD
+            + JOINT
+            + '[group.g0]\nunits = [{ unit = "j", rate = 100 }]\n'
+            + "".join(f'[group.g{i + 1}]\nunits = [{{ unit = "g{i}", rate = 100 }}]\n' for i in range(9)),
+            ["has 'g0' 100 times in a period", "10,000 are the most"],
+        ),
+        (
+            HEAD + "[sequence.s]\nactions = [" + '"walk", ' * 5000 + "]\n",
+            ["1,000 actions at most", "5,000"],
+        ),
+        (
+            HEAD + '[sequence.s]\nactions = [{ action = "walk", seconds = 30000 }, '
+            '{ action = "run", seconds = 30000 }]\n',
+            ["36,000 s together at most", "60,000"],
+        ),
+        (HEAD + '[sequence.s]\nactions = ["walk"]\njoin = 1e5\n', ["join = 100000.0", "60 at most"]),
         (
             HEAD + '[sequence.s]\nactions = ["walk", "sitt"]\n',
             ["[sequence.s] actions[1] = 'sitt'", "sit"],
@@ -189,3 +254,8 @@ def test_what_is_used_for_the_right_is_mirrored(tmp_path: Path) -> None:
 def test_an_unknown_action_offers_the_nearest(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"no action is called 'swnig'\. Did you mean swing"):
         swinging(tmp_path)["swnig"]
+
+
+def test_a_file_without_end_is_refused_and_not_read_to_the_end() -> None:
+    with pytest.raises(FormatError, match="/dev/zero: so much is no library of actions; 16 MB are the most"):
+        library("/dev/zero")

@@ -80,6 +80,13 @@ def test_what_no_action_reaches_is_told(clips: dict[str, gmr.Motion]) -> None:
     assert any("no action reaches so far" in sentence for sentence in sentences(found))
 
 
+def test_clips_whose_names_would_be_alike_are_all_kept(clips: dict[str, gmr.Motion]) -> None:
+    walk = synthesised(seconds=3)
+    found = complete(clips, walk, speeds=(1.0,), turn_rates_deg=(80.1, 80.2))
+    made = [ask for ask in found.asked.values() if ask.turn_rate_deg]
+    assert sorted(made) == [Ask(1.0, 80.1), Ask(1.0, 80.2)]
+
+
 def test_a_dataset_without_holes_is_left_alone(completed: Completion) -> None:
     def never(ask: Ask, like: gmr.Motion) -> gmr.Motion:
         raise AssertionError("nothing is missing")

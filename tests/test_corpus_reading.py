@@ -73,8 +73,13 @@ def test_takes_are_chosen_by_index_slice_and_mask(corpus: Corpus) -> None:
     nods = corpus.where(np.array(corpus.table["action"]) == "nod")
     assert [take.labels["file"] for take in nods] == files[4:]
     assert [take.labels["file"] for take in corpus.where([3, 0])] == [files[3], files[0]]
+    assert [take.labels["file"] for take in corpus.where([-1])] == files[-1:]
+    assert len(corpus.where([])) == len(corpus.where([]).windows(10)) == 0
     with pytest.raises(IndexError):
         corpus[8]
+    for wrong in ([True], np.ones(9, bool), [8], [-9], [0.5, 1.0], np.ones((2, 2), int), 3, ["nod"]):
+        with pytest.raises(GmrError, match=r"takes cannot be chosen by .* give 8 booleans, or whole numbers"):
+            corpus.where(wrong)
 
 
 @pytest.mark.parametrize(

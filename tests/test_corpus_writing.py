@@ -211,10 +211,11 @@ def test_a_folder_with_other_things_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("years of work")
     with pytest.raises(GmrError, match=r"no corpus in this folder, but 'thesis\.txt'"):
         write(tmp_path)
-    (tmp_path / "corpus.json").write_text('{"name": "thesis"}')
-    with pytest.raises(GmrError, match=r"corpus\.json: this is no plan of a corpus"):
-        write(tmp_path)
-    assert len(tree(tmp_path)) == 2
+    for other in (b'{"name": "thesis"}', b'{"takes": ', b"\xff\xfe", b"[" * 100_000, b""):
+        (tmp_path / "corpus.json").write_bytes(other)
+        with pytest.raises(GmrError, match=r"corpus\.json: this is no plan of a corpus"):
+            write(tmp_path)
+        assert len(tree(tmp_path)) == 2
 
 
 def test_a_place_that_is_no_folder_is_said(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import json
 import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -18,7 +18,15 @@ if TYPE_CHECKING:
     from gmr.actionlets.actions.library import Library
     from gmr.actionlets.corpus import Plan, Written
 
-__all__ = ["Several", "corpus", "corpus_options"]
+__all__ = ["Several", "corpus", "corpus_options", "refuse_corpus_options"]
+
+
+_OF_A_CORPUS: Final = {
+    "suffix": "--format",
+    "workers": "--workers",
+    "cluster": "--cluster",
+    "as_json": "--json",
+}
 
 
 class Several(click.ParamType[Any]):
@@ -60,6 +68,14 @@ def corpus_options(command: Callable[..., Any]) -> Callable[..., Any]:
     for option in reversed(options):
         command = option(command)
     return command
+
+
+def refuse_corpus_options() -> None:
+    """Refuses, for a single motion, what only a corpus can be told."""
+    context = click.get_current_context()
+    for name, flag in _OF_A_CORPUS.items():
+        if context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE:
+            raise click.UsageError(f"{flag} tells of a corpus; give --variations N too, or leave it out")
 
 
 def corpus(

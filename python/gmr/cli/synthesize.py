@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from gmr.cli.common import STDIO, Rate, say, write_output
-from gmr.cli.corpus import Several, corpus, corpus_options
+from gmr.cli.corpus import Several, corpus, corpus_options, refuse_corpus_options
 
 if TYPE_CHECKING:
     from gmr.actionlets.actions.library import Library
@@ -122,8 +122,14 @@ def synthesize(
             str(action).split(","), variations, Path(str(out)), suffix, files,
             workers=workers, cluster=cluster, as_json=as_json, quiet=quiet, **options,
         )  # fmt: skip
-    if action is not None and not is_list and out is None and strip is None:
-        raise click.UsageError("give --out FILE, --strip FILE or both")
+    if action is not None and not is_list:
+        if out is None and strip is None:
+            raise click.UsageError("give --out FILE, --strip FILE or both")
+        refuse_corpus_options()
+        if "," in action:
+            raise click.UsageError(
+                f"'{action}' are several actions; give --variations N, which makes N takes of each"
+            )
     known = library(*files)
     if is_list:
         click.echo("\n".join(_listed(known)))
@@ -157,13 +163,17 @@ def made(
 ) -> Take:
     """The take that the command's options ask for."""
     from gmr.actionlets import Body
+    from gmr.actionlets.actions.taking import check_frames, taken
 
-    chosen = dict(settings)
-    chosen |= {
-        name: value for name, value in (("speed", speed), ("turn_rate", turn_rate)) if value is not None
-    }
+    own = [(name, value) for name, value in (("speed", speed), ("turn_rate", turn_rate)) if value is not None]
+    chosen: dict[str, Profile] = {}
+    for name, value in (*settings, *own):
+        if name in chosen:
+            raise click.UsageError(f"'{name}' is set twice; say which it is")
+        chosen[name] = value
     who = Body.of(height, sex, percentile, detailed=body == "detailed")
-    return known[action].take(seconds, fps, seed, who, variation or 0.0, **chosen)
+    check_frames(action, seconds or 0.0, fps)
+    return taken(known[action].perform(chosen, seconds, seed, variation or 0.0), who, fps)
 
 
 def _draw(take: Take, strip: Path) -> None:

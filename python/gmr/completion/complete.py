@@ -6,7 +6,7 @@ by what they hold: the second evaluation runs every trial of the first again.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -126,7 +126,7 @@ def complete(
         if made is None:
             not_made.append(ask)
             continue
-        name = _unused(f"made_{ask.name}", motions) + _SUFFIX
+        name = _unused(f"made_{ask.name}", {*motions, *added}) + _SUFFIX
         added[name], asked[name] = made, ask
     tell("making clips", len(wanted), len(wanted))
     after = evaluate({**motions, **added}, progress=phase("after"), **settings) if added else before
@@ -143,7 +143,7 @@ def _with_straight(asks: Iterable[Ask]) -> tuple[Ask, ...]:
     return tuple(dict.fromkeys(sorted([*asks, *(ask.straight for ask in asks)])))
 
 
-def _unused(name: str, motions: Mapping[str, Motion]) -> str:
-    while name + _SUFFIX in motions:
+def _unused(name: str, taken: Container[str]) -> str:
+    while name + _SUFFIX in taken:
         name += "_"
     return name

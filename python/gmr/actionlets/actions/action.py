@@ -15,8 +15,8 @@ from gmr.actionlets.actions.anatomy import Anatomy
 from gmr.actionlets.actions.parts import Courses
 from gmr.actionlets.actions.performance import Performance
 from gmr.actionlets.actions.plan import Plan, performed
-from gmr.actionlets.actions.timeline import MOST_SECONDS, Profile, Timeline, chosen_parameters
-from gmr.actionlets.actions.units import SIDES, ActionUnit, Parameter
+from gmr.actionlets.actions.timeline import Profile, Timeline, chosen_parameters
+from gmr.actionlets.actions.units import MOST_SECONDS, SIDES, ActionUnit, Parameter
 from gmr.actionlets.actions.unrolling import Unrolled
 from gmr.actionlets.actions.variation import Pool, Variable
 from gmr.actionlets.actions.written import Written
@@ -112,8 +112,9 @@ class Action(ABC):
         Raises:
             ActionletError: as :meth:`perform`, or ``fps`` is no rate.
         """
-        from gmr.actionlets.actions.taking import taken
+        from gmr.actionlets.actions.taking import check_frames, taken
 
+        check_frames(self.name, seconds or 0.0, fps)
         return taken(self.perform(parameters, seconds, seed, variation), body, fps)
 
     def motion(

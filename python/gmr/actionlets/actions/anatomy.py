@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Final
 
+import numpy as np
+
 from gmr.actionlets.actions.tables import nearest
 from gmr.actionlets.actions.units import Extreme
 from gmr.errors import FormatError
@@ -17,6 +19,9 @@ Fault = Callable[[str], FormatError]
 """Makes an error of a sentence, at a place in a file."""
 
 _ROUNDING: Final = 1e-6
+_FARTHEST: Final = 100.0
+_MOST_TURNED: Final = 36_000.0
+"""Metres and degrees that the root, which has no limits, is moved from its path by at most."""
 _ROOT: Final = {"pelvis": "root"}
 """By joint, what its degrees of freedom are named for, where that is something else."""
 
@@ -73,7 +78,8 @@ class Anatomy:
 
     def check_range(self, dof: str, course: Sequence[Extreme], fault: Fault) -> None:
         """Refuses extremes that leave the range of motion for some values of the parameters."""
-        low, high = self.ranges[dof]
+        far = _FARTHEST if dof in self.lengths else _MOST_TURNED
+        low, high = np.clip(self.ranges[dof], -far, far).tolist()
         unit = "m" if dof in self.lengths else "degrees"
         for extreme in course:
             for angle in (extreme.angle.lowest, extreme.angle.highest):

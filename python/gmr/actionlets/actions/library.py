@@ -13,7 +13,7 @@ from typing import Final
 from gmr.actionlets.actions.action import Action, SingleAction
 from gmr.actionlets.actions.anatomy import the_anatomy
 from gmr.actionlets.actions.parts import action_courses, check_unit, mirrored_contacts
-from gmr.actionlets.actions.reading import Content, read_files
+from gmr.actionlets.actions.reading import MAX_BYTES, Content, read_files
 from gmr.actionlets.actions.sequence import sequence_of
 from gmr.actionlets.actions.tables import nearest
 from gmr.actionlets.actions.units import Unit
@@ -83,7 +83,8 @@ def contents(*files: str | os.PathLike[str]) -> dict[str, bytes]:
     found = _shipped()
     for file in files:
         try:
-            found[os.fspath(file)] = Path(file).read_bytes()
+            with Path(file).open("rb") as opened:
+                found[os.fspath(file)] = opened.read(MAX_BYTES + 1)
         except OSError as error:
             raise FormatError(f"it cannot be read: {error.strerror}", file=os.fspath(file)) from error
     return found

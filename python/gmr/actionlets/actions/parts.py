@@ -25,6 +25,10 @@ _TO_A_SIDE: Final = ("lateral", "rotation", "sway", "obliquity")
 """Motions of the trunk and the root that are the other way round in a mirror."""
 
 
+_DEEPEST: Final = 100
+_MOST_EXTREMES: Final = 10_000
+
+
 @dataclass(frozen=True, slots=True)
 class _Assembly:
     units: Mapping[str, Unit]
@@ -56,9 +60,13 @@ def action_courses(action: ActionUnit, units: Mapping[str, Unit], anatomy: Anato
         courses[dof] = _changed(courses.get(dof), change, dof, at)
     if action.mirrored:
         courses = _in_the_mirror(courses, sided)
+    if not courses:
+        raise at.fault("moves nothing; give it units, or dofs with their extremes")
     for dof, course in courses.items():
         anatomy.check_range(dof, course, at.fault)
-        _check_parameters(course, action, f"dof {dof}", at)
+        numbers = (number for e in course for number in (e.phase, e.angle, e.skew))
+        _check_parameters(numbers, action, f"moves {dof}", at)
+    _check_timing(action, at)
     return courses
 
 
@@ -77,6 +85,8 @@ def _of_part(part: Part, side: str, at: _Assembly, chain: tuple[str, ...]) -> Co
     """The courses of a part in a unit that is itself used for ``side``."""
     if part.unit in chain:
         raise at.fault(f"goes in a circle of names: {' -> '.join((*chain, part.unit))}")
+    if len(chain) > _DEEPEST:
+        raise at.fault(f"has units in units more than {_DEEPEST} deep; put fewer into each other")
     unit = at.units.get(part.unit)
     if unit is None:
         raise at.fault(
@@ -87,6 +97,11 @@ def _of_part(part: Part, side: str, at: _Assembly, chain: tuple[str, ...]) -> Co
     courses = _of_unit(unit, own, at.inside(unit), (*chain, part.unit))
     if flipped:
         courses = _in_the_mirror(courses, at.sided)
+    if (count := part.rate * max(map(len, courses.values()), default=0)) > _MOST_EXTREMES:
+        raise at.fault(
+            f"has '{part.unit}' {part.rate} times in a period, with {count:,} extremes of one degree of "
+            f"freedom; {_MOST_EXTREMES:,} are the most"
+        )
     return {dof: _synchronised(_spread(course, part.scale), part) for dof, course in courses.items()}
 
 
@@ -184,11 +199,22 @@ def _changed(
     return tuple(replace(e, angle=e.angle.plus(change.add)) for e in spread)
 
 
-def _check_parameters(course: Sequence[Extreme], action: ActionUnit, what: str, at: _Assembly) -> None:
+def _check_timing(action: ActionUnit, at: _Assembly) -> None:
+    """Checks the parameters of all that an action says beside its degrees of freedom."""
+    _check_parameters([action.span], action, "lasts as long as it does", at)
+    for side, spans in action.contacts.items():
+        numbers = [number for span in spans for number in span]
+        _check_parameters(numbers, action, f"has contacts of the {side} foot", at)
+    for label, span in action.labels.items():
+        _check_parameters(span, action, f"has the phase '{label}'", at)
+    for name in action.courses.keys() - action.parameters.keys():
+        raise at.fault(
+            f"has the course of a parameter '{name}', which it does not have. "
+            f"{nearest(name, action.parameters)}"
+        )
+
+
+def _check_parameters(numbers: Iterable[Value], action: ActionUnit, does: str, at: _Assembly) -> None:
     known = {*action.parameters, *action.derived}
-    for extreme in course:
-        for value in (extreme.phase, extreme.angle, extreme.skew):
-            for name in value.parameters - known:
-                raise at.fault(
-                    f"moves {what} by the parameter '{name}', which it does not have. {nearest(name, known)}"
-                )
+    for name in sorted(frozenset[str]().union(*(number.parameters for number in numbers)) - known):
+        raise at.fault(f"{does} by the parameter '{name}', which it does not have. {nearest(name, known)}")

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,10 +15,20 @@ from pathlib import Path
 from typing import Any, Final
 
 from gmr.actionlets.actions.tables import Table, nearest
-from gmr.actionlets.actions.units import LEAN, SIDES, ActionUnit, Change, Parameter, Part, Step, Unit
+from gmr.actionlets.actions.units import (
+    LEAN,
+    MOST_SECONDS,
+    SIDES,
+    ActionUnit,
+    Change,
+    Parameter,
+    Part,
+    Step,
+    Unit,
+)
 from gmr.errors import FormatError
 
-__all__ = ["FORMAT", "Content", "Origin", "read_files"]
+__all__ = ["FORMAT", "MAX_BYTES", "Content", "Origin", "read_files"]
 
 FORMAT: Final = 1
 _KINDS: Final = ("joint", "limb", "group", "action", "sequence")
@@ -29,7 +40,15 @@ _ACTION_KEYS: Final = (
 )  # fmt: skip
 _TAKEN: Final = ("seconds", "fps", "seed", "body", "variation", LEAN)
 """What is asked beside the parameters, and what follows from them."""
-_MAX_BYTES: Final = 16 * 2**20
+MAX_BYTES: Final = 16 * 2**20
+"""Of a library file."""
+_LONGEST: Final = 100
+_NAME: Final = re.compile(rf"\w[\w-]{{0,{_LONGEST - 1}}}")
+_DEEPEST: Final = 100
+"""Tables that one may take ``from`` another, in a row."""
+_MOST_STEPS: Final = 1000
+_SPANS: Final = (0.01, 3600.0)
+"""Seconds of a period or a duration."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,21 +101,30 @@ def read_files(files: Mapping[str, bytes]) -> Content:
 
 @lru_cache(maxsize=32)
 def _tables(data: bytes, file: str) -> tuple[Origin, ...]:
-    if len(data) > _MAX_BYTES:
-        raise FormatError(f"{len(data):,} bytes are no library of actions; 16 MB are the most", file=file)
+    if len(data) > MAX_BYTES:
+        raise FormatError("so much is no library of actions; 16 MB are the most", file=file)
     try:
         text = tomllib.loads(data.decode("utf-8-sig"))
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # ValueError: no UTF-8, no TOML, too many digits
         raise FormatError(f"this is no TOML: {error}. See docs/actions.md.", file=file) from error
     top = Table(file, Path(file).name, text)
     top.check_keys(("format", "name", "about", "credit", *_KINDS))
     if text.get("format") != FORMAT or isinstance(text.get("format"), bool):
         raise top.fault("format", text.get("format"), f"format = {FORMAT}, the version that this gmr reads")
     return tuple(
-        Origin(kind, name, Table(file, f"{kind}.{name}", table.held))
+        Origin(kind, _checked_name(top, kind, name), Table(file, f"{kind}.{name}", table.held))
         for kind in _KINDS
         for name, table in top.table(kind).tables().items()
     )
+
+
+def _checked_name(top: Table, kind: str, name: str) -> str:
+    """A name that can be typed, listed between commas, and be that of a folder of takes."""
+    if not _NAME.fullmatch(name):
+        raise top.fault(
+            kind, name, f"a name of letters, digits, _ and -, as in [{kind}.my_{kind}]; {_LONGEST} at most"
+        )
+    return name
 
 
 def _followed(origin: Origin, found: Mapping[tuple[str, str], Origin], seen: tuple[str, ...]) -> Origin:
@@ -108,6 +136,8 @@ def _followed(origin: Origin, found: Mapping[tuple[str, str], Origin], seen: tup
     chain = (*seen, origin.name)
     if name in chain:
         raise table.fault("from", name, f"no circle of names; here {' -> '.join((*chain, name))}")
+    if len(chain) > _DEEPEST:
+        raise table.fault("from", name, f"at most {_DEEPEST} names that take from each other in a row")
     source = found.get((_SPACES[origin.kind], name))
     if source is None or source.kind != origin.kind:
         known = [other.name for other in found.values() if other.kind == origin.kind]
@@ -186,14 +216,15 @@ def _action(origin: Origin) -> ActionUnit:
             file=table.file,
         )
     span = table.value(spans[0])
-    if not span.lowest > 0:
-        raise table.fault(spans[0], table.held[spans[0]], "more than 0 s, whatever the parameters")
+    shortest, longest = _SPANS
+    if not (span.lowest >= shortest and span.highest <= longest):
+        raise table.fault(
+            spans[0], table.held[spans[0]],
+            f"more than 0 s, whatever the parameters: {shortest:g} to {longest:g}",
+        )  # fmt: skip
     contacts = table.table("contacts")
     contacts.check_keys(SIDES)
     labels = table.table("phases")
-    seconds = table.number("seconds") if "seconds" in table.held else None
-    if seconds is not None and not seconds > 0:
-        raise table.fault("seconds", seconds, "more than 0 s")
     return ActionUnit(
         name=origin.name,
         file=table.file,
@@ -206,7 +237,7 @@ def _action(origin: Origin) -> ActionUnit:
         cyclic=spans[0] == "period",
         span=span,
         begins=table.number("begins", 0),
-        seconds=seconds,
+        seconds=_seconds(table),
         parts=_parts(table),
         changes={dof: _change(table.table("dofs"), dof) for dof in table.table("dofs").held},
         contacts={side: contacts.spans(side) for side in SIDES},
@@ -215,6 +246,16 @@ def _action(origin: Origin) -> ActionUnit:
         courses={name: _course(table.table("course"), name) for name in table.table("course").held},
         mirrored=table.flag("mirrored"),
     )
+
+
+def _seconds(table: Table) -> float | None:
+    """How long, where the table says."""
+    if "seconds" not in table.held:
+        return None
+    seconds = table.number("seconds")
+    if not 0 < seconds <= MOST_SECONDS:
+        raise table.fault("seconds", seconds, f"more than 0 s, and {MOST_SECONDS:,.0f} at most")
+    return seconds
 
 
 def _parameter(name: str, table: Table) -> Parameter:
@@ -269,7 +310,12 @@ def _steps(table: Table) -> tuple[Step, ...]:
         raise table.fault(
             "actions", rows, "a list of actions, each a name or { action = ..., seconds = ... }"
         )
-    return tuple(_step(table, f"actions[{number}]", row) for number, row in enumerate(rows))
+    if len(rows) > _MOST_STEPS:
+        raise table.fault("actions", rows, f"{_MOST_STEPS:,} actions at most; there are {len(rows):,}")
+    steps = tuple(_step(table, f"actions[{number}]", row) for number, row in enumerate(rows))
+    if (lasts := sum(step.seconds or 0.0 for step in steps)) > MOST_SECONDS:
+        raise table.fault("actions", rows, f"{MOST_SECONDS:,.0f} s together at most; there are {lasts:,.0f}")
+    return steps
 
 
 def _step(table: Table, key: str, row: Any) -> Step:
@@ -278,8 +324,5 @@ def _step(table: Table, key: str, row: Any) -> Step:
     if not isinstance(row, dict):
         raise table.fault(key, row, "a name or { action = ..., seconds = ... }")
     entry = Table(table.file, f"{table.place}] [{key}", row)
-    seconds = entry.number("seconds") if "seconds" in row else None
-    if seconds is not None and not seconds > 0:
-        raise entry.fault("seconds", seconds, "more than 0 s")
     chosen = {name: entry.number(name) for name in row if name not in ("action", "seconds")}
-    return Step(entry.text("action"), seconds, chosen)
+    return Step(entry.text("action"), _seconds(entry), chosen)

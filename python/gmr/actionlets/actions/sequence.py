@@ -20,6 +20,7 @@ __all__ = ["SequenceAction", "sequence_of"]
 
 _JOIN: Final = 0.25
 """Seconds of a transition where a file does not say."""
+_LONGEST_JOIN: Final = 60.0
 _PHASES: Final = 100
 """Phases of a cycle that are looked at for a change-over."""
 
@@ -132,8 +133,8 @@ def sequence_of(origin: Origin, steps: tuple[Step, ...], actions: Mapping[str, A
             raise FormatError(f"[{table.place}] actions[{number}]: {error}", file=table.file) from error
         found.append((action, step.seconds, chosen))
     join = table.number("join", _JOIN)
-    if not join > 0:
-        raise table.fault("join", join, "more than 0 s")
+    if not 0 < join <= _LONGEST_JOIN:
+        raise table.fault("join", join, f"more than 0 s, and {_LONGEST_JOIN:g} at most")
     return SequenceAction(
         origin.name,
         table.text("about", ""),

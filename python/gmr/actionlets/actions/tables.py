@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
@@ -16,6 +15,11 @@ from gmr.errors import FormatError
 __all__ = ["Table", "nearest"]
 
 _HALF = Value(0.5)
+
+_GREATEST = 1e6
+"""No number of a library is further from 0: what is made of them stays finite, and of a size."""
+
+_NUMBER = "a number from -1e6 to 1e6"
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
@@ -87,15 +91,14 @@ class Table:
         names = list(among)
         value = self.held.get(key, default)
         if value not in names:
-            offer = f". {nearest(value, names)}" if isinstance(value, str) else ""
-            raise self.fault(key, value, f"one of {', '.join(names)}{offer}")
+            raise self.fault(key, value, f"one of {', '.join(names)}")
         return str(value)
 
     def number(self, key: str, default: float | None = None) -> float:
         """A finite number; an error where there is none and no default."""
         value = self.held.get(key, default)
         if not _is_number(value):
-            raise self.fault(key, value, "a number")
+            raise self.fault(key, value, _NUMBER)
         return float(value)
 
     def value(self, key: str, default: float | None = None) -> Value:
@@ -109,11 +112,11 @@ class Table:
             return Value(float(held))
         if not isinstance(held, dict) or not held:
             raise self.fault(
-                key, held, "a number, or { speed = [[0.5, 18], [1.4, 25]] } with a parameter's name"
+                key, held, f"{_NUMBER}, or {{ speed = [[0.5, 18], [1.4, 25]] }} with a parameter's name"
             )
         base = held.get("base", 0.0)
         if not _is_number(base):
-            raise self.fault(f"{key}.base", base, "a number")
+            raise self.fault(f"{key}.base", base, _NUMBER)
         curves = [
             self._curve(f"{key}.{name}", name, points) for name, points in held.items() if name != "base"
         ]
@@ -183,7 +186,7 @@ class Table:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= _GREATEST
 
 
 def _is_row(row: Any, length: int) -> bool:

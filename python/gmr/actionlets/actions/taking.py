@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from typing import Final
 
 from gmr.actionlets.actions.performance import Performance
 from gmr.actionlets.body import Body
 from gmr.actionlets.posing import motion as posed
 from gmr.actionlets.travel import Carried, Report, carried
+from gmr.errors import ActionletError
 from gmr.motion import Motion
 
-__all__ = ["Take", "taken"]
+__all__ = ["Take", "check_frames", "taken"]
+
+_MOST_FPS: Final = 10_000.0
+_MOST_FRAMES: Final = 5_000_000
+"""Ten hours at 120 frames a second, and some."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +44,9 @@ def taken(performance: Performance, body: Body | None = None, fps: float = 120.0
     """The performance, done by a body; a man of 1.75 m where it is None.
 
     Raises:
-        ActionletError: ``fps`` is no rate above 0.
+        ActionletError: ``fps`` is no rate above 0 and up to 10,000, or the frames are too many.
     """
+    check_frames(performance.action, performance.seconds, fps)
     who = body or _man()
     found = carried(who, performance.score.sample(fps, who.names), performance, fps)
     motion = posed(who, found.angles, found.root, found.heading, fps, name=performance.action)
@@ -49,3 +56,20 @@ def taken(performance: Performance, body: Body | None = None, fps: float = 120.0
 @cache
 def _man() -> Body:
     return Body.of()
+
+
+def check_frames(action: str, seconds: float, fps: float) -> None:
+    """Refuses what is no rate, or too many frames.
+
+    Raises:
+        ActionletError: ``fps`` is not above 0 and up to 10,000, or there would be more than 5,000,000 frames.
+    """
+    if not 0 < fps <= _MOST_FPS:
+        raise ActionletError(
+            f"{fps:g} frames a second cannot be; give more than 0 and at most {_MOST_FPS:,.0f}"
+        )
+    if (frames := seconds * fps) > _MOST_FRAMES:
+        raise ActionletError(
+            f"{seconds:g} s of '{action}' at {fps:g} frames a second are {frames:,.0f} frames; "
+            f"{_MOST_FRAMES:,} are the most: give fewer of them, or less time"
+        )

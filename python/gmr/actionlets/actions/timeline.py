@@ -19,15 +19,12 @@ from gmr.actionlets.actions.units import LEAN, ActionUnit, Parameter
 from gmr.actionlets.actions.values import monotone
 from gmr.errors import ActionletError
 
-__all__ = ["MOST_SECONDS", "Moments", "Profile", "Timeline", "chosen_parameters"]
+__all__ = ["Moments", "Profile", "Timeline", "chosen_parameters"]
 
 Floats = NDArray[np.float64]
 
 Profile: TypeAlias = float | Sequence[tuple[float, float]]
 """A number, or (seconds, number) points between which the parameter goes smoothly."""
-
-MOST_SECONDS: Final = 36_000.0
-"""A performance lasts no longer."""
 
 _STEP: Final = 1 / 60
 _GRAVITY: Final = 9.81

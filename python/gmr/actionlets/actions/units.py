@@ -7,9 +7,23 @@ from dataclasses import dataclass, field
 
 from gmr.actionlets.actions.values import Value
 
-__all__ = ["LEAN", "SIDES", "ActionUnit", "Change", "Extreme", "Parameter", "Part", "Step", "Unit"]
+__all__ = [
+    "LEAN",
+    "MOST_SECONDS",
+    "SIDES",
+    "ActionUnit",
+    "Change",
+    "Extreme",
+    "Parameter",
+    "Part",
+    "Step",
+    "Unit",
+]
 
 SIDES = ("left", "right")
+
+MOST_SECONDS = 36_000.0
+"""A performance lasts no longer."""
 
 LEAN = "lean"
 """The angle from upright at which a body on a curve is in balance, positive to the left:

@@ -10,6 +10,7 @@ from itertools import product
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, Final
 
+from gmr.actionlets.actions.taking import check_frames
 from gmr.actionlets.corpus.choices import Choice, Drawn, Fixed, choice
 from gmr.actionlets.corpus.making import versions
 from gmr.actionlets.corpus.plan import Plan
@@ -37,9 +38,7 @@ _SETTINGS: Final = {
 _BODY: Final = ("height", "percentile", "sex")
 
 _MOST: Final = 10_000_000
-"""Variations of an action."""
-
-_MOST_FPS: Final = 10_000.0
+"""Takes."""
 
 
 def planned(
@@ -77,8 +76,12 @@ def planned(
     names = _actions(library, actions)
     if not 1 <= variations <= _MOST:
         raise GmrError(f"{variations:,} variations cannot be; ask for 1 to {_MOST:,} of each action")
-    if not 0 < fps <= _MOST_FPS:
-        raise GmrError(f"{fps:g} frames a second cannot be; give more than 0 and at most {_MOST_FPS:,.0f}")
+    if len(names) * variations > _MOST:
+        raise GmrError(
+            f"{variations:,} variations of {len(names)} actions are {len(names) * variations:,} takes; "
+            f"{_MOST:,} are the most in a corpus"
+        )
+    check_frames(listed(names, 3), 0.0, fps)
     if seed < 0:
         raise GmrError(f"a seed of {seed} cannot be; give a whole number from 0")
     if format not in FORMATS:
@@ -90,7 +93,7 @@ def planned(
         fps=float(fps),
         format=f".{format}",
         body=body,
-        settings=_settings(settings or {}, body),
+        settings=_settings(settings or {}, body, names, fps),
         parameters=_parameters({name: library[name].parameters for name in names}, parameters or {}),
         library={name: hashlib.sha256(text).hexdigest() for name, text in _named(contents or {})},
         made_with=versions(),
@@ -114,7 +117,7 @@ def _actions(library: Library, actions: Iterable[str]) -> tuple[str, ...]:
     return names
 
 
-def _settings(given: Mapping[str, str], body: str) -> dict[str, Choice]:
+def _settings(given: Mapping[str, str], body: str, actions: Iterable[str], fps: float) -> dict[str, Choice]:
     if unknown := [name for name in given if name not in _SETTINGS]:
         raise GmrError(f"no setting is called '{unknown[0]}'; {_near(unknown[0], _SETTINGS)}")
     texts = {name: given.get(name, default) for name, default in _SETTINGS.items()}
@@ -122,6 +125,7 @@ def _settings(given: Mapping[str, str], body: str) -> dict[str, Choice]:
     for value in found["seconds"].values if "seconds" in found else ():
         if isinstance(value, str) or not value > 0:
             raise GmrError(f"takes of {value} s cannot be; give more than 0 seconds")
+        check_frames(listed(list(actions), 3), value, fps)
     for value in found["variation"].values:
         if isinstance(value, str) or not 0 <= value <= 1:
             raise GmrError(f"a variation of {value} cannot be; give 0 (as written) to 1")

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gmr.actionlets.corpus.manifest import MANIFEST, read_manifest
-from gmr.errors import FormatError
+from gmr.errors import FormatError, GmrError
 
 if TYPE_CHECKING:
     import pyarrow
@@ -103,14 +103,17 @@ class Corpus(Sequence[LabelledTake]):
         return tuple(dict.fromkeys(self._table["action"].to_pylist()))
 
     def where(self, rows: ArrayLike) -> Corpus:
-        """The corpus of some takes: (N,) booleans, or indices in the order wanted."""
+        """The corpus of some takes: (N,) booleans, or indices in the order wanted.
+
+        Raises:
+            GmrError: neither; or other than N booleans, or an index that there is not.
+        """
         import pyarrow
 
         chosen = np.asarray(rows)
         found = object.__new__(Corpus)
         found._place = self._place
-        rows_taken = np.flatnonzero(chosen) if chosen.dtype == bool else chosen.astype(np.int64)
-        found._table = self._table.take(pyarrow.array(rows_taken))
+        found._table = self._table.take(pyarrow.array(_places(chosen, len(self))))
         return found
 
     def windows(
@@ -140,6 +143,19 @@ class Corpus(Sequence[LabelledTake]):
 
     def __repr__(self) -> str:
         return f"Corpus({str(self._place)!r}, {len(self)} takes of {', '.join(self.actions)})"
+
+
+def _places(chosen: NDArray[Any], count: int) -> NDArray[np.int64]:
+    """The indices that (N,) booleans or indices, also from the end, mean."""
+    if chosen.dtype == bool and chosen.shape == (count,):
+        return np.flatnonzero(chosen).astype(np.int64)
+    is_index = chosen.ndim == 1 and (not len(chosen) or np.issubdtype(chosen.dtype, np.integer))
+    if not is_index or (len(chosen) and not -count <= chosen.min() <= chosen.max() < count):
+        raise GmrError(
+            f"takes cannot be chosen by {chosen.dtype} of the shape {chosen.shape}: give {count} booleans, "
+            f"or whole numbers from 0 to {count - 1}"
+        )
+    return np.where(chosen < 0, chosen + count, chosen).astype(np.int64)
 
 
 def _pairs(spans: Sequence[Mapping[str, float]]) -> NDArray[np.float64]:

@@ -154,7 +154,7 @@ def _begin(plan: Plan, place: Path) -> None:
     """
     path = place / PLAN
     try:
-        there = path.read_text(encoding="utf-8")
+        there = path.read_bytes()
     except FileNotFoundError:
         found = sorted(other.name for other in place.iterdir() if not other.name.startswith("."))
         if found:
@@ -166,8 +166,8 @@ def _begin(plan: Plan, place: Path) -> None:
             file.write(plan.to_json().encode())
         return
     try:
-        differences = plan.differences(there)
-    except ValueError:
+        differences = plan.differences(there.decode())
+    except (ValueError, RecursionError):
         raise GmrError(
             f"{path}: this is no plan of a corpus; name another folder, or remove this one"
         ) from None

@@ -149,7 +149,8 @@ def _footings(
         found.append(footing(leg, sole_of(body, leg), nominal, turned(pelvis, leg.hip), own, fps))
     if not any(one.stances for one in found):
         raise ActionletError(
-            "no foot touches the ground in these frames: give a contact of 'left' or 'right' in plan.contacts"
+            "no foot touches the ground in these frames: give the plan, or the action in its library file, "
+            "contacts of 'left' or 'right'"
         )
     return found
 

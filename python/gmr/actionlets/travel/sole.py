@@ -106,8 +106,8 @@ def pitch_of(foot: Floats) -> Floats:
 def yaw_of(foot: Floats) -> Floats:
     """(F,) radians that the foot points to the left of its frame's forward: its twist about the vertical.
 
-    Of ``R_y(yaw) R_x(pitch)`` that is the yaw however the foot is pitched. Where its toes point it is not: they
-    point back once a foot that leaves the ground is past upright.
+    Of ``R_y(yaw) R_x(pitch)`` that is the yaw however the foot is pitched. Where its toes point it is not:
+    they point back once a foot that leaves the ground is past upright.
     Source: swing and twist; the twist's ``tan`` of half the angle is ``q_y / q_w``.
     """
     return np.asarray(np.arctan2(foot[:, 0, 2] - foot[:, 2, 0], foot[:, 0, 0] + foot[:, 2, 2]), np.float64)
