@@ -255,6 +255,7 @@ WALK = demo_folder() / "07_01.bvh"
         (lambda: decompose_curve([0.0, 1.0], [0.0, NAN]), "angle 1 of curve 0 is nan"),
         (lambda: decompose_curve([0.0, 1.0, 2.0], [0.0, 1.0]), "one angle of each curve for each time"),
         (lambda: decompose_curve([0.0, 1.0], [0.0, 1.0], 0), "tolerance is 0 degrees"),
+        (lambda: decompose_curve([0.0, 1.0], [0.0, 1.0], 1e300), "give degrees above 0, 180 at most"),
         (lambda: decompose(gmr.read(WALK)[:1]), "two frames or more"),
         (
             lambda: decompose(gmr.read(WALK), joints=["Tail"]),

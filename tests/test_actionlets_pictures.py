@@ -81,9 +81,11 @@ def test_the_figure_of_a_standing_body_stands_on_its_soles() -> None:
     [
         ({"view": "above"}, "give one of side, front, three-quarter"),
         ({"count": 0}, "give 1 or more figures"),
+        ({"count": 10**9}, "give 1 or more figures, 10,000 at most"),
+        ({"motion": []}, "there is no motion to draw"),
         ({"path": "strip.gif"}, r"written as .svg or .png, not as 'strip.gif'"),
     ],
 )
 def test_what_cannot_be_drawn_is_refused(arguments: dict[str, object], words: str) -> None:
     with pytest.raises(ActionletError, match=words):
-        film_strip(STEPS, **arguments)  # type: ignore[arg-type]
+        film_strip(**{"motion": STEPS, **arguments})  # type: ignore[arg-type]

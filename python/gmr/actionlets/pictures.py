@@ -21,6 +21,8 @@ __all__ = ["VIEWS", "film_strip"]
 VIEWS = {"side": (90.0, 0.0), "front": (0.0, 0.0), "three-quarter": (40.0, 10.0)}
 """By name: how far the camera goes round from the front to the body's right, and how high, degrees."""
 
+_MOST_FIGURES = 10_000
+
 
 def film_strip(
     motion: Motion | Sequence[Motion],
@@ -50,14 +52,16 @@ def film_strip(
         The SVG.
 
     Raises:
-        ActionletError: an unknown view, a count below 1, another suffix, or no body in a motion.
+        ActionletError: an unknown view, a count that cannot be, another suffix, no motion, or no body in one.
         MissingExtraError: a PNG needs the extra [report].
     """
     if view not in VIEWS:
         raise ActionletError(f"view={view!r}: give one of {', '.join(VIEWS)}")
-    if count < 1:
-        raise ActionletError(f"count={count}: give 1 or more figures")
+    if not 1 <= count <= _MOST_FIGURES:
+        raise ActionletError(f"count={count}: give 1 or more figures, {_MOST_FIGURES:,} at most")
     motions = [motion] if isinstance(motion, Motion) else list(motion)
+    if not motions:
+        raise ActionletError("there is no motion to draw; give one or more")
     if labels is not None and len(labels) < count:
         raise ActionletError(f"{len(labels)} labels for {count} figures; give one for each")
     rows = []

@@ -70,7 +70,7 @@ def decompose_curve(times: ArrayLike, angles: ArrayLike, tolerance_deg: float = 
     Args:
         times: (N,) seconds, rising; the track begins at the first.
         angles: (N,) radians, continuous: unwrapped, without gaps.
-        tolerance_deg: degrees, above 0.
+        tolerance_deg: degrees, above 0, 180 at most.
 
     Raises:
         ActionletError: fewer than two samples, times that do not rise, an angle that is no finite number, or
@@ -87,12 +87,12 @@ def decompose_curves(
     Args:
         times: (N,) seconds, rising.
         angles: (N, D) radians.
-        tolerance_deg: degrees, above 0.
+        tolerance_deg: degrees, above 0, 180 at most.
     """
     t, values = _checked(times, angles)
     tolerance = math.radians(checked_number(tolerance_deg, "the tolerance", "give degrees above 0"))
-    if tolerance <= 0:
-        raise ActionletError(f"the tolerance is {tolerance_deg:g} degrees; give degrees above 0")
+    if not 0 < tolerance <= math.pi:
+        raise ActionletError(f"the tolerance is {tolerance_deg:g} degrees; give degrees above 0, 180 at most")
     at_once = max(1, _BATCH // len(t))
     curves = list(values.T)
     found: list[Track] = []
