@@ -27,8 +27,8 @@ _LOADING = 0.12
 _HANDED_ON = 0.95
 """Share of its load that a foot on its toes has handed on."""
 
-_TURNED = np.radians(28.0)
-_TURNED_MOST = np.radians(45.0)
+_TURNED = np.radians(15.0)
+_TURNED_MOST = np.radians(30.0)
 """Radians between foot and pelvis from which a foot that rests on its heel or toes pivots, and that it does
 not exceed then."""
 
