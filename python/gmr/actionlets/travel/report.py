@@ -15,7 +15,7 @@ from gmr.actionlets.travel.legs import legs_of, pelvis_shift, pelvis_turn, sole_
 from gmr.actionlets.travel.mass import legs_moment, trunk_moment
 from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.plan import SIDES, Planned, Stance, asked, stances
-from gmr.actionlets.travel.sole import pitch_of
+from gmr.actionlets.travel.sole import pitch_of, yaw_of
 from gmr.actionlets.travel.turns import pitched, turned
 
 if TYPE_CHECKING:
@@ -191,8 +191,7 @@ def _feet(
         foot = place_foot(leg, angles)
         for point, found in ((leg.heel, heels), (leg.toe, toes)):
             found.append(pelvis + _in_world(turned(turn, foot.ankle + turned(foot.foot, point)), heading))
-        ahead = turned(turn, foot.foot[:, :, 2])
-        yaws.append(heading + np.arctan2(ahead[:, 0], ahead[:, 2]))
+        yaws.append(heading + yaw_of(turn @ foot.foot))
     return heels, toes, yaws
 
 

@@ -99,8 +99,9 @@ class Sole:
 
 
 def pitch_of(foot: Floats) -> Floats:
-    """(F,) radians that the toes point up, of (F, 3, 3) feet."""
-    return np.asarray(np.arcsin(np.clip(foot[:, 1, 2], -1, 1)), np.float64)
+    """(F,) radians that the toes point up, of (F, 3, 3) feet; beyond a quarter where the sole looks up."""
+    level = np.copysign(np.hypot(foot[:, 0, 2], foot[:, 2, 2]), foot[:, 1, 1])
+    return np.asarray(np.arctan2(foot[:, 1, 2], level), np.float64)
 
 
 def yaw_of(foot: Floats) -> Floats:
