@@ -220,8 +220,8 @@ def test_labels_tile_the_time_that_their_phases_tile(tmp_path: Path) -> None:
 def test_a_sequence_is_continuous_and_goes_on_with_the_same_step() -> None:
     done = library()["walk_and_run"].perform()
     assert done.seconds == pytest.approx(5)
-    times = np.linspace(0, 5, 5001)
-    assert np.abs(np.diff(done.score.velocities(times), axis=0)).max() < 0.5
+    times = np.linspace(0, 5, 50001)
+    assert np.abs(np.diff(done.score.velocities(times), axis=0)).max() < 0.1
     for spans in done.contacts.values():
         assert np.diff(spans[:, 0]).min() > 0.4
     assert done.speed[0, 1] == pytest.approx(1.8)
@@ -268,3 +268,45 @@ dofs."waist.flexion" = { add = 15 }
     times = np.linspace(0, 3, 30)
     bent = trudge.angles(times, ["waist.flexion"]) - walk.angles(times, ["waist.flexion"])
     np.testing.assert_allclose(np.degrees(bent), 15, atol=1e-9)
+
+
+@given(size=st.floats(0.5, 1.3), speed=st.floats(0.3, 1.5))
+@settings(max_examples=15)
+def test_bodies_of_other_sizes_walk_alike_where_their_froude_numbers_are(size: float, speed: float) -> None:
+    """Times go with the root of the leg's length, and so do speeds."""
+    root = float(np.sqrt(size))
+    action = library()["walk"]
+    one, other = (
+        action.perform({"speed": speed}, 4),
+        action.perform({"speed": speed * root}, 4 * root, size=size),
+    )
+    times = np.linspace(0, 4, 50)
+    dofs = ["left_hip.flexion", "left_knee.flexion", "right_ankle.flexion", "waist.rotation"]
+    np.testing.assert_allclose(
+        other.score.angles(times * root, dofs), one.score.angles(times, dofs), atol=2e-3
+    )
+    for side, spans in one.contacts.items():
+        inside = spans[(spans[:, 0] > 0) & (spans[:, 1] < 4)]
+        np.testing.assert_allclose(
+            [other.contacts[side][np.abs(other.contacts[side][:, 0] - root * a).argmin()] for a, _ in inside],
+            root * inside,
+            atol=1e-6,
+        )
+    assert other.speed[0, 1] == pytest.approx(speed * root)
+
+
+def test_a_small_body_takes_more_steps_than_a_tall_one_at_the_same_speed_and_both_keep_it() -> None:
+    small, tall = (library()["walk"].take(10, body=Body.of(height), speed=1.2) for height in (1.25, 1.95))
+    steps = [len(take.performance.contacts["left"]) for take in (small, tall)]
+    assert steps[0] > 1.15 * steps[1]
+    for take in (small, tall):
+        assert take.report.speed == pytest.approx(1.2, rel=0.03)
+        assert take.report.feet_speed == pytest.approx(1.2, rel=0.15)
+
+
+def test_the_beat_of_a_march_and_the_time_of_a_jump_do_not_follow_the_size() -> None:
+    for name in ("march", "jump"):
+        one, other = (library()[name].perform(size=size) for size in (1.0, 0.7))
+        assert one.seconds == other.seconds
+        for side in ("left", "right"):
+            np.testing.assert_allclose(other.contacts[side], one.contacts[side], atol=1e-9)

@@ -165,6 +165,14 @@ class Body:
         return read_only(places + np.array([0.0, self.hip_height, 0.0]))
 
     @cached_property
+    def leg_length(self) -> float:
+        """Length of a leg from hip to ankle, metres."""
+        names = self.skeleton.names
+        return float(
+            -sum(self.skeleton.offsets[names.index(f"left_{joint}"), 1] for joint in ("knee", "ankle"))
+        )
+
+    @cached_property
     def hip_height(self) -> float:
         """Height of the pelvis above the ground in the standing posture, metres."""
         names = self.skeleton.names

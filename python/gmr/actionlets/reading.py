@@ -102,7 +102,7 @@ def read(
         local = _local(body, turned.world, turned.hinges)
         hinges, said, shown = dict(turned.hinges), turned.rest, found.motion
         hips = (found.place("left_hip") + found.place("right_hip")) / 2
-        scale = body_leg(body) / leg_of(found)
+        scale = body.leg_length / leg_of(found)
         places = hips * scale - np.array([0.0, _sunk(body, found, scale), 0.0])
     values = np.zeros((len(places), body.dof_count))
     for joint in _turning_joints(body):
@@ -119,12 +119,6 @@ def _sunk(body: Body, found: Anatomy, scale: float) -> float:
     ankles = np.minimum(found.place("left_ankle")[:, 1], found.place("right_ankle")[:, 1])
     above = scale * float(np.quantile(ankles, _STANDING)) - body.foot.ankle_height
     return above if abs(above) < _SOLE else 0.0
-
-
-def body_leg(body: Body) -> float:
-    """Length of a leg from hip to ankle, metres."""
-    names = body.skeleton.names
-    return float(-sum(body.skeleton.offsets[names.index(f"left_{joint}"), 1] for joint in ("knee", "ankle")))
 
 
 def _is_own(body: Body, motion: Motion) -> bool:

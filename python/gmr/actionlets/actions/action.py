@@ -15,6 +15,7 @@ from gmr.actionlets.actions.anatomy import Anatomy
 from gmr.actionlets.actions.parts import Courses
 from gmr.actionlets.actions.performance import Performance
 from gmr.actionlets.actions.plan import Plan, performed
+from gmr.actionlets.actions.similarity import SPEED, Pace, leg_ratio, pace
 from gmr.actionlets.actions.timeline import Profile, Timeline, chosen_parameters
 from gmr.actionlets.actions.units import MOST_SECONDS, SIDES, ActionUnit, Parameter
 from gmr.actionlets.actions.unrolling import Unrolled
@@ -59,11 +60,13 @@ class Action(ABC):
         seed: int,
         variation: float,
         begins: float | None = None,
+        size: float = 1.0,
     ) -> Plan:
         """What is to be done when; arguments as in :meth:`perform`, ``chosen`` complete.
 
         Args:
             begins: the phase with which it begins; None: as its file says.
+            size: as in :meth:`perform`.
         """
 
     def perform(
@@ -72,6 +75,7 @@ class Action(ABC):
         seconds: float | None = None,
         seed: int = 0,
         variation: float = 0.0,
+        size: float = 1.0,
     ) -> Performance:
         """The action as one score, with contacts, speed and turn rate.
 
@@ -81,6 +85,8 @@ class Action(ABC):
             seconds: how long; what is done once rests afterwards. None: as its file says, its duration, or 4.
             seed, variation: another performer, 0 (as written) to 1 (as different as one still calls it so);
                 the same numbers give the same performance on every machine.
+            size: length of the legs by those of the reference body: shorter ones take more and shorter steps
+                at the same speed (:mod:`gmr.actionlets.actions.similarity`).
 
         Raises:
             ActionletError: an unknown parameter, one out of its range, or too little or too much time.
@@ -92,7 +98,10 @@ class Action(ABC):
             raise ActionletError(
                 f"{seconds:g} s of '{self.name}' cannot be; give more than 0 and at most {MOST_SECONDS:,.0f}"
             )
-        return performed(self.plan(chosen, seconds, seed, variation), self.name, chosen, seed, variation)
+        if not (np.isfinite(size) and size > 0):
+            raise ActionletError(f"legs of {size:g} times the usual length cannot be; give more than 0")
+        plan = self.plan(chosen, seconds, seed, variation, size=size)
+        return performed(plan, self.name, chosen, seed, variation)
 
     def take(
         self,
@@ -115,7 +124,7 @@ class Action(ABC):
         from gmr.actionlets.actions.taking import check_frames, taken
 
         check_frames(self.name, seconds or 0.0, fps)
-        return taken(self.perform(parameters, seconds, seed, variation), body, fps)
+        return taken(self.perform(parameters, seconds, seed, variation, leg_ratio(body)), body, fps)
 
     def motion(
         self,
@@ -164,27 +173,41 @@ class SingleAction(Action):
         seed: int,
         variation: float,
         begins: float | None = None,
+        size: float = 1.0,
     ) -> Plan:
         """What is to be done when."""
         change = self._variable.varied(seed, variation)
+        going = self.pace(size, change.tempo)
         unit = self.unit if begins is None else replace(self.unit, begins=begins)
-        lasts = self._seconds(seconds, unit, chosen, change.tempo)
-        timeline = Timeline.of(unit, chosen, lasts, change.tempo)
+        lasts = self._seconds(seconds, unit, chosen, going)
+        timeline = Timeline.of(unit, chosen, lasts, going)
         unrolled = Unrolled(self._written, change, timeline)
         return Plan(
             seconds=lasts,
             knots=unrolled.knots(),
             contacts=unrolled.contacts(),
-            speed=_profile(timeline, "speed", 1.0, lasts),
+            speed=_profile(timeline, SPEED, 1 / going.speed, lasts),
             turn_rate=_profile(timeline, "turn_rate", float(np.radians(1.0)), lasts),
             travel=unit.travel,
             labels=unrolled.labels(lasts),
             phase=float(np.interp(lasts, timeline.times, timeline.phase)) if unit.cyclic else None,
         )
 
-    def standing(self, parameters: Mapping[str, float], phases: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """(2, n) whether the left and the right foot are on the ground at phases of the cycle."""
-        values = {**parameters, **dict.fromkeys(self.unit.derived, 0.0)}
+    def pace(self, size: float, tempo: float = 1.0) -> Pace:
+        """How legs perform it that are ``size`` times as long as the reference body's."""
+        found = pace(self.unit, size)
+        return found._replace(period=tempo * found.period)
+
+    def period(self, chosen: Mapping[str, Profile], size: float) -> float:
+        """Seconds of a cycle with the parameters of the end."""
+        return self.pace(size).period * float(self.unit.span.at(self._at_the_end(chosen, size)))
+
+    def standing(
+        self, chosen: Mapping[str, Profile], phases: NDArray[np.float64], size: float
+    ) -> NDArray[np.bool_]:
+        """(2, n) whether the left and the right foot are on the ground at phases of the cycle, with the
+        parameters of the end."""
+        values = self._at_the_end(chosen, size)
         found = np.zeros((len(SIDES), len(phases)), dtype=bool)
         for side, row in zip(SIDES, found, strict=True):
             for begin, end in self.unit.contacts[side]:
@@ -200,10 +223,17 @@ class SingleAction(Action):
     def _variable(self) -> Variable:
         return Variable.of(self.unit, self._written, self.ranges, self.pool)
 
+    def _at_the_end(self, chosen: Mapping[str, Profile], size: float) -> dict[str, float]:
+        values = {name: float(np.ravel(profile)[-1]) for name, profile in chosen.items()}
+        values |= dict.fromkeys(self.unit.derived, 0.0)
+        if SPEED in values:
+            values[SPEED] *= self.pace(size).speed
+        return values
+
     def _seconds(
-        self, asked: float | None, unit: ActionUnit, chosen: Mapping[str, Profile], tempo: float
+        self, asked: float | None, unit: ActionUnit, chosen: Mapping[str, Profile], going: Pace
     ) -> float:
-        lasts = 0.0 if unit.cyclic else tempo * _duration(unit, chosen)
+        lasts = 0.0 if unit.cyclic else _duration(unit, chosen, going)
         if asked is None:
             return max(unit.seconds or 0.0, lasts) or _SECONDS
         if asked < lasts - 1e-9:
@@ -214,9 +244,9 @@ class SingleAction(Action):
         return asked
 
 
-def _duration(unit: ActionUnit, chosen: Mapping[str, Profile]) -> float:
+def _duration(unit: ActionUnit, chosen: Mapping[str, Profile], going: Pace) -> float:
     """Seconds that it takes to be done once; with parameters that change, at most."""
-    longest = Timeline.of(unit, chosen, 1.5 * unit.span.highest)
+    longest = Timeline.of(unit, chosen, 1.5 * going.period * unit.span.highest, going)
     return float(np.interp(1.0, longest.phase, longest.times))
 
 

@@ -45,19 +45,20 @@ class SequenceAction(Action):
         seed: int,
         variation: float,
         begins: float | None = None,
+        size: float = 1.0,
     ) -> Plan:
         """What is to be done when; time beyond that of its actions goes to the last of them."""
         plans: list[Plan] = []
         owed = 0.0
         for number, (action, lasts, parameters) in enumerate(self.steps):
             shorter = None if lasts is None else max(lasts - owed, lasts / 2)
-            plan = action.plan(parameters, shorter, seed, variation, begins)
+            plan = action.plan(parameters, shorter, seed, variation, begins, size)
             owed = 0.0
             if number + 1 < len(self.steps):
                 after, _, others = self.steps[number + 1]
-                owed = _until_alike(action, parameters, after, others, plan)
+                owed = _until_alike(action, parameters, after, others, plan, size)
                 if owed:
-                    plan = action.plan(parameters, plan.seconds + owed, seed, variation, begins)
+                    plan = action.plan(parameters, plan.seconds + owed, seed, variation, begins, size)
             plans.append(plan)
             begins = plan.phase
         total = sum(plan.seconds for plan in plans)
@@ -69,14 +70,19 @@ class SequenceAction(Action):
             action, _, parameters = self.steps[-1]
             begins = plans[-2].phase if len(plans) > 1 else None
             lasts = plans[-1].seconds + seconds - total
-            plans[-1] = action.plan(parameters, lasts, seed, variation, begins)
+            plans[-1] = action.plan(parameters, lasts, seed, variation, begins, size)
         whole = in_turn(plans, self.join)
         names = [action.name for action, _, _ in self.steps]
         return replace(whole, labels=_named(names, plans) + whole.labels)
 
 
 def _until_alike(
-    one: Action, chosen: Mapping[str, Profile], other: Action, others: Mapping[str, Profile], plan: Plan
+    one: Action,
+    chosen: Mapping[str, Profile],
+    other: Action,
+    others: Mapping[str, Profile],
+    plan: Plan,
+    size: float,
 ) -> float:
     """Seconds by which to go on with ``one`` until the feet do the same in both, longest before and after.
 
@@ -87,10 +93,7 @@ def _until_alike(
     if plan.phase is None or not other.unit.cyclic:
         return 0.0
     phases = np.arange(_PHASES) / _PHASES
-    stand = [
-        action.standing({k: float(np.ravel(v)[-1]) for k, v in values.items()}, phases)
-        for action, values in ((one, chosen), (other, others))
-    ]
+    stand = [action.standing(values, phases, size) for action, values in ((one, chosen), (other, others))]
     differ = np.flatnonzero((stand[0] != stand[1]).any(axis=0))
     if not len(differ):
         return 0.0
@@ -98,8 +101,7 @@ def _until_alike(
     away = np.minimum(away, 1 - away).min(axis=1)
     best = phases[away >= 0.9 * away.max()]
     cycles = ((best - plan.phase) % 1.0).min()
-    period = float(one.unit.span.at({k: float(np.ravel(v)[-1]) for k, v in chosen.items()}))
-    return float(cycles) * period
+    return float(cycles) * one.period(chosen, size)
 
 
 def _named(names: list[str], plans: list[Plan]) -> tuple[tuple[str, float, float], ...]:

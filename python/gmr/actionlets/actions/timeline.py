@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.actionlets.actions.many_values import Values, within
+from gmr.actionlets.actions.similarity import SPEED, WRITTEN, Pace
 from gmr.actionlets.actions.tables import nearest
 from gmr.actionlets.actions.units import LEAN, ActionUnit, Parameter
 from gmr.actionlets.actions.values import monotone
@@ -59,7 +60,7 @@ class Timeline:
     Args:
         times: (n,) seconds, rising; 0 is where the performance begins.
         phase: (n,) cycles.
-        parameters: by name, (n,).
+        parameters: by name, (n,); the speed as it is looked up, see :class:`Pace`.
         is_cyclic: whether there are cycles beside the first.
         steady: the parameters, where none of them changes; else None.
     """
@@ -72,18 +73,20 @@ class Timeline:
 
     @classmethod
     def of(
-        cls, action: ActionUnit, chosen: Mapping[str, Profile], seconds: float, tempo: float = 1.0
+        cls, action: ActionUnit, chosen: Mapping[str, Profile], seconds: float, pace: Pace = WRITTEN
     ) -> Timeline:
         """The timeline of an action.
 
         Args:
             chosen: all its parameters.
             seconds: how long it is performed.
-            tempo: what its period or duration is multiplied with.
+            pace: what its period or duration, and its speed, are multiplied with.
         """
-        times = _grid(seconds, 2.0 * tempo * action.span.highest if action.cyclic else 0.0)
+        times = _grid(seconds, 2.0 * pace.period * action.span.highest if action.cyclic else 0.0)
         parameters = _parameters_at(times, action, chosen, seconds)
-        rates = 1 / (tempo * np.broadcast_to(action.span.at(parameters), times.shape))
+        if SPEED in parameters:
+            parameters[SPEED] = parameters[SPEED] * pace.speed
+        rates = 1 / (pace.period * np.broadcast_to(action.span.at(parameters), times.shape))
         between = np.diff(times) * (rates[1:] + rates[:-1]) / 2
         phase = np.concatenate([[0.0], np.cumsum(between)])
         begins = action.begins if action.cyclic else 0.0
