@@ -33,6 +33,8 @@ _MOST: Final = 0.6
 """Amount of the mutation that a variation of 1 asks for: beyond it steps stumble."""
 _OWN: Final = 0.25
 """Share by which the sides differ, of what both change."""
+_STRIDE: Final = 0.3
+"""Share of its change that hip flexion takes where a speed is asked, for a stride carries it."""
 _SHARE: Final = 0.45
 """Of the way to its neighbour that an extreme moves at most."""
 
@@ -91,6 +93,7 @@ class Variable:
         end: (E,) the piece that ends there.
         neighbour: (E,) of the two extremes beside it the one that is nearer, but not as high.
         way: (E,) how far it is there.
+        free: (E,) share of its change that each extreme takes.
         partner: (E,) the extreme of the left limb from which it takes most of its changes; itself for others.
         warped: (N,) phases at which the times of the cycle's extremes are told.
         phases: (S,) the action's, within the cycle.
@@ -102,6 +105,7 @@ class Variable:
     end: Ints
     neighbour: Ints
     way: Floats
+    free: Floats
     partner: Ints
     warped: Floats
     phases: Floats
@@ -126,6 +130,8 @@ class Variable:
         angles = np.concatenate([one[:, 1] for one in rows.values()])
         inside = cycle.times[(cycle.times >= 0) & (cycle.times <= 1)]
         phases = written.phases.at(np.arange(len(written.phases)), defaults(unit))
+        strides = "speed" in unit.parameters and unit.travel == "path"
+        free = {dof: _STRIDE if strides and _sideless(dof) == "hip.flexion" else 1.0 for dof in rows}
         return cls(
             cycle=cycle,
             choices=Choices.of(score, others),
@@ -133,6 +139,7 @@ class Variable:
             end=end,
             neighbour=neighbour,
             way=angles[neighbour] - angles,
+            free=np.concatenate([np.full(len(one), free[dof]) for dof, one in rows.items()]),
             partner=_partners(written, neighbour),
             warped=np.unique([*inside, 0.0, 1.0]),
             phases=np.where((phases >= 0) & (phases <= 1), phases, phases % 1.0),
@@ -159,8 +166,8 @@ class Variable:
             mutant.tempo,
             np.interp(self.phases, self.warped, mutant.pace.warped(self.warped) - self.warped),
             self.neighbour,
-            (1 - _OWN) * towards[self.partner] + _OWN * towards,
-            (1 - _OWN) * tilt[self.partner] + _OWN * tilt,
+            self.free * ((1 - _OWN) * towards[self.partner] + _OWN * towards),
+            self.free * ((1 - _OWN) * tilt[self.partner] + _OWN * tilt),
         )
 
     def _swapped(self, rng: np.random.Generator) -> Floats:
