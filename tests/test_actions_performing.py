@@ -310,3 +310,43 @@ def test_the_beat_of_a_march_and_the_time_of_a_jump_do_not_follow_the_size() -> 
         assert one.seconds == other.seconds
         for side in ("left", "right"):
             np.testing.assert_allclose(other.contacts[side], one.contacts[side], atol=1e-9)
+
+
+TURNING = ("walk", "run", "jog", "sneak", "march")
+
+
+@given(name=st.sampled_from(SHIPPED), share=PARAMETERS, seed=st.integers(0, 2**20), variation=st.floats(0, 1))
+@settings(max_examples=60)
+def test_however_it_varies_no_hip_twists_and_joints_stay_near_their_ranges(
+    name: str, share: float, seed: int, variation: float
+) -> None:
+    """A foot that leaves the ground on the tip of its toes has no direction of its own: hips used to follow it
+    by more than 100 degrees."""
+    action = library()[name]
+    asked = {k: v for k, v in chosen(action, share).items() if k != "turn_rate" or name == "turn"}
+    report = action.take(None, 60, seed, None, variation, **asked).report
+    twists = [c for dof, c in report.corrections_deg.items() if dof.endswith("hip.rotation")]
+    assert max(twists, default=0.0) < 40
+    assert max(report.beyond_deg.values(), default=0.0) < (20 if variation <= 0.6 else 35)
+
+
+@given(name=st.sampled_from(TURNING), share=PARAMETERS)
+@settings(max_examples=25)
+def test_planned_feet_pass_as_fast_as_is_asked(name: str, share: float) -> None:
+    action = library()[name]
+    low, high = {"walk": (0.9, 2.2), "sneak": (0.3, 1.0), "march": (0.5, 1.6)}.get(name, (1.6, 6.0))
+    speed = min(low + share * (high - low), action.parameters["speed"].high)
+    report = action.take(4, 60, speed=speed).report
+    assert report.feet_speed == pytest.approx(speed, rel=0.12)
+
+
+@given(name=st.sampled_from(("walk", "run", "jog", "sneak")), share=PARAMETERS, left=st.booleans())
+@settings(max_examples=15)
+def test_bends_of_60_degrees_a_second_keep_the_ankles_near_their_ranges(
+    name: str, share: float, left: bool
+) -> None:
+    action = library()[name]
+    speed = action.parameters["speed"]
+    asked = speed.low + (0.2 + 0.6 * share) * (speed.high - speed.low)
+    report = action.take(4, 60, speed=asked, turn_rate=60 if left else -60).report
+    assert max(report.beyond_deg.values(), default=0.0) < 10
