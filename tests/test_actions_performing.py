@@ -320,8 +320,8 @@ TURNING = ("walk", "run", "jog", "sneak", "march")
 def test_however_it_varies_no_hip_twists_and_joints_stay_near_their_ranges(
     name: str, share: float, seed: int, variation: float
 ) -> None:
-    """A foot that leaves the ground on the tip of its toes has no direction of its own: hips used to follow it
-    by more than 100 degrees."""
+    """A foot that leaves the ground on the tip of its toes points nowhere: hips once followed it by more than
+    100 degrees."""
     action = library()[name]
     asked = {k: v for k, v in chosen(action, share).items() if k != "turn_rate" or name == "turn"}
     report = action.take(None, 60, seed, None, variation, **asked).report
@@ -350,3 +350,13 @@ def test_bends_of_60_degrees_a_second_keep_the_ankles_near_their_ranges(
     asked = speed.low + (0.2 + 0.6 * share) * (speed.high - speed.low)
     report = action.take(4, 60, speed=asked, turn_rate=60 if left else -60).report
     assert max(report.beyond_deg.values(), default=0.0) < 10
+
+
+@given(height=st.floats(0.1, 0.5))
+@settings(max_examples=12)
+def test_a_jump_from_a_stand_comes_down_where_it_began(height: float) -> None:
+    take = library()["jump"].take(height=height)
+    root = take.carried.root
+    assert np.linalg.norm((root[-1] - root[0])[::2]) < 0.04
+    (flight,) = take.report.flights
+    assert flight.end - flight.begin == pytest.approx(np.sqrt(8 * height / 9.81), abs=0.02)
