@@ -15,7 +15,8 @@ demo: build ## Evaluate the clips that ship with gmr and write the report
 	$(BIN)/gmr demo --out $(REPORT)
 
 test: develop ## Everything that a contributor needs before a commit
-	$(MAKE) --no-print-directory check-rust check-python smoke
+	$(MAKE) --no-print-directory --jobs=2 --output-sync=line check-rust check-python
+	$(MAKE) --no-print-directory smoke
 
 build: $(VENV)/.gmr ## Build gmr into .venv/
 
