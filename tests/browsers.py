@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 FLAGS = (
     "--no-sandbox",
@@ -17,6 +18,23 @@ FLAGS = (
     "--disable-component-update",
     "--disable-sync",
 )
+
+
+def opened(browser: Browser, file: Path, size: ViewportSize) -> tuple[Page, list[str]]:
+    """A page of ours when it is drawn, and all that was complained of, or asked of a network, up to now."""
+    page = browser.new_page(viewport=size)
+    complaints: list[str] = []
+    page.on("console", lambda message: complaints.append(message.text))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on(
+        "request",
+        lambda request: (
+            None if request.url.startswith(("file:", "data:")) else complaints.append(request.url)
+        ),
+    )
+    page.goto(file.as_uri())
+    page.wait_for_selector("html[data-drawn=yes]", timeout=60_000)
+    return page, complaints
 
 
 def chromium(*flags: str) -> Iterator[Browser]:

@@ -86,7 +86,7 @@ def test_takes_that_cannot_be_made_are_named_and_the_code_is_1(tmp_path: Path, c
         (("swya", "--variations", 2), "no action is called 'swya'. Did you mean sway", 1),
         (("sway,swya", "--variations", 2), "no action is called 'swya'", 1),
         (("sway", "--variations", 2, "--set", "depth=99"), "it goes from 2 to 10 deg", 1),
-        (("sway", "--variations", 2, "--set", "dpeth=3"), "did you mean depth?", 1),
+        (("sway", "--variations", 2, "--set", "dpeth=3"), "Did you mean depth?", 1),
         (("sway", "--variations", 2, "--seconds", "0"), "give more than 0 seconds", 1),
         (("sway", "--variations", 2, "--height", "1.5..20"), "20", 1),
         (("sway", "--variations", 2, "--height", "1.7", "--percentile", "50"), "percentile", 1),

@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import Browser, ViewportSize
 
 import gmr
-from browsers import chromium
+from browsers import chromium, opened
 from gmr.cli.commands import gmr as command
 from gmr.cli.common import finished
 from gmr.demo import demo_folder
@@ -84,18 +84,7 @@ def page_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_score_draws_itself_and_tells_what_is_pointed_at(
     browser: Browser, page_file: Path, size: ViewportSize
 ) -> None:
-    page = browser.new_page(viewport=size)
-    complaints: list[str] = []
-    page.on("console", lambda message: complaints.append(message.text))
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on(
-        "request",
-        lambda request: (
-            None if request.url.startswith(("file:", "data:")) else complaints.append(request.url)
-        ),
-    )
-    page.goto(page_file.as_uri())
-    page.wait_for_selector("html[data-drawn=yes]", timeout=60_000)
+    page, complaints = opened(browser, page_file, size)
     found = gmr.actionlets.decompose(gmr.read(WALK), joints=["LeftUpLeg", "LeftLeg", "RightArm"])
     pieces = found.score.piece_count
     shown = page.locator(".score .hit").evaluate_all(

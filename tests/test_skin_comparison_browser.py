@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import Browser, ViewportSize
 
 import gmr
-from browsers import chromium
+from browsers import chromium, opened
 from gmr.skinning import comparison
 
 pytestmark = pytest.mark.browser
@@ -40,18 +40,7 @@ def page_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_page_draws_itself_without_a_network(
     browser: Browser, page_file: Path, size: ViewportSize
 ) -> None:
-    page = browser.new_page(viewport=size)
-    complaints: list[str] = []
-    page.on("console", lambda message: complaints.append(message.text))
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on(
-        "request",
-        lambda request: (
-            None if request.url.startswith(("file:", "data:")) else complaints.append(request.url)
-        ),
-    )
-    page.goto(page_file.as_uri())
-    page.wait_for_selector("html[data-drawn=yes]", timeout=60_000)
+    page, complaints = opened(browser, page_file, size)
     assert page.locator(".chart svg").count() == 9
     assert page.locator("img.still").evaluate("image => image.naturalWidth") == 2
     assert page.title() == "rigged_simple: skinning compared"

@@ -4,12 +4,13 @@ into them.
 Source: Zheng, Li, Ogunbona, Dong, Kharitonenko, "Human Motion Simulation and Action Corpus", 2007.
 """
 
-# Each name is imported when it is first used: who asks for an actionlet need not wait for the library.
-TYPE_CHECKING = False
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from gmr.lazily import lazily
 
 if TYPE_CHECKING:
-    from typing import Any
-
     from gmr.actionlets import corpus, posing, travel
     from gmr.actionlets.actionlet import Actionlet
     from gmr.actionlets.actions.action import Action
@@ -62,6 +63,7 @@ __all__ = [
     "variation",
 ]
 
+# Each name is imported when it is first used: who asks for an actionlet need not wait for the library.
 _HOMES = {
     "Action": "gmr.actionlets.actions.action",
     "Actionlet": "gmr.actionlets.actionlet",
@@ -94,17 +96,7 @@ _HOMES = {
 }
 _MODULES = frozenset({"corpus", "posing", "travel"})
 
-
-def __getattr__(name: str) -> "Any":
-    from importlib import import_module
-
-    if name in _MODULES:
-        return import_module(f"gmr.actionlets.{name}")
-    if name not in _HOMES:
-        raise AttributeError(f"module 'gmr.actionlets' has no attribute '{name}'")
-    found = getattr(import_module(_HOMES[name]), name)
-    globals()[name] = found
-    return found
+__getattr__ = lazily(__name__, _HOMES, _MODULES)
 
 
 def __dir__() -> list[str]:

@@ -67,17 +67,13 @@ _METHOD = (
 )
 
 
-def _facts(of: Completion) -> str:
-    facts = {
+def _facts(of: Completion) -> dict[str, str]:
+    return {
         "clips": f"{of.before.summary.clip_count:,}",
         "made clips": f"{len(of.added):,}",
         "of the dataset": duration(of.before.summary.seconds),
         "made": duration(float(of.clips["seconds"].sum())),
     }
-    return "\n".join(
-        element("div", element("dt", text(name)) + element("dd", text(value)))
-        for name, value in facts.items()
-    )
 
 
 def _verdict(of: Completion) -> str:

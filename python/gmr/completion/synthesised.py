@@ -54,7 +54,7 @@ def synthesised(
         if action is None:
             return None
         from gmr.actionlets import Body
-        from gmr.skinning import retarget
+        from gmr.skinning.driving.other_skeleton import retarget
 
         take = action.take(
             seconds,

@@ -11,7 +11,7 @@ from importlib.metadata import version
 from typing import Any, Final
 
 from gmr.pages.columns import packed
-from gmr.pages.document import json_text, own, script_hash, text
+from gmr.pages.document import element, json_text, own, script_hash, text
 from gmr.pages.figure import Figure
 from gmr.pages.theme import DARK, LIGHT
 from gmr.table import Table
@@ -30,7 +30,7 @@ class Page:
         title: of the window.
         eyebrow: the line above the heading: what kind of page this is.
         heading: what it is about.
-        facts: HTML of the figures below the heading: ``<div><dt>what</dt><dd>how much</dd></div>`` each.
+        facts: the figures below the heading: how much, by what.
         sections: HTML of the rest; the first has the id ``verdict``.
         figures: the charts that the sections hold, as elements with the class ``chart`` and ``data-figure``.
         tables: saved with the page besides the figures' data.
@@ -42,7 +42,7 @@ class Page:
     title: str
     eyebrow: str
     heading: str
-    facts: str
+    facts: Mapping[str, str]
     sections: str
     figures: Sequence[Figure]
     tables: Mapping[str, Table] = field(default_factory=dict)
@@ -58,7 +58,7 @@ class Page:
             "eyebrow": text(self.eyebrow),
             "heading": text(self.heading),
             "version": text(version("gmr-motion")),
-            "facts": self.facts,
+            "facts": self._facts(),
             "sections": self.sections,
             "without_scripts": text(self.without_scripts),
             "style": _style(),
@@ -69,6 +69,12 @@ class Page:
         }
         # Filled in one go, so that nothing in a value is taken for a place to fill.
         return re.sub(r"\{\{(\w+)\}\}", lambda place: values[place[1]], own(__package__, "page.html"))
+
+    def _facts(self) -> str:
+        return "\n".join(
+            element("div", element("dt", text(what)) + element("dd", text(amount)))
+            for what, amount in self.facts.items()
+        )
 
     def _packed(self) -> dict[str, Any]:
         tables = {name: packed(table, exact=True) for name, table in self.tables.items()}

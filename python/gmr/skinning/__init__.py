@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from gmr.lazily import lazily
 
 if TYPE_CHECKING:
     from gmr.skinning.appearance import Material, Texture, TextureUse
@@ -61,12 +63,4 @@ _HOMES = {
     "retarget": "gmr.skinning.driving",
 }
 
-
-def __getattr__(name: str) -> Any:
-    from importlib import import_module
-
-    if name not in _HOMES:
-        raise AttributeError(f"module 'gmr.skinning' has no attribute '{name}'")
-    found = getattr(import_module(_HOMES[name]), name)
-    globals()[name] = found
-    return found
+__getattr__ = lazily(__name__, _HOMES)

@@ -6,7 +6,9 @@ stand on a stage beside each other, and the stage is shown live or saved.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from gmr.lazily import lazily
 
 if TYPE_CHECKING:
     from gmr.view.figure import Figure, Worn, motion_figure, posed_figure
@@ -28,12 +30,4 @@ _HOMES = {
     "show": "gmr.view.server",
 }
 
-
-def __getattr__(name: str) -> Any:
-    from importlib import import_module
-
-    if name not in _HOMES:
-        raise AttributeError(f"module 'gmr.view' has no attribute '{name}'")
-    found = getattr(import_module(_HOMES[name]), name)
-    globals()[name] = found
-    return found
+__getattr__ = lazily(__name__, _HOMES)

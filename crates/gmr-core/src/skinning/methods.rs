@@ -36,12 +36,17 @@ pub(super) trait Blending {
         None
     }
 
-    /// The vertices and their normals, blended.
+    /// The vertices and their normals, blended: by dual quaternions.
+    #[inline(always)]
     fn blend<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
         influences: &mut I,
         at: At<'_>,
         rest: Rest<L>,
-    ) -> ([L; 3], [L; 3]);
+    ) -> ([L; 3], [L; 3]) {
+        let (v, n) = stretched::<L, I, NORMALS>(influences, at, rest.v, rest);
+        let q = dual_quaternion(influences, at);
+        (move_by(q, v), if NORMALS { turn_by(q[0], n) } else { n })
+    }
 }
 
 pub(super) struct Linear;
@@ -61,18 +66,7 @@ impl Blending for Linear {
     }
 }
 
-impl Blending for Pivot {
-    #[inline(always)]
-    fn blend<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
-        influences: &mut I,
-        at: At<'_>,
-        rest: Rest<L>,
-    ) -> ([L; 3], [L; 3]) {
-        let (v, n) = stretched::<L, I, NORMALS>(influences, at, rest.v, rest);
-        let q = dual_quaternion(influences, at);
-        (move_by(q, v), if NORMALS { turn_by(q[0], n) } else { n })
-    }
-}
+impl Blending for Pivot {}
 
 impl Blending for Running {
     const IS_PAIRED: bool = false;
@@ -94,17 +88,6 @@ impl Blending for Running {
             }
         }
         Some(&room[..count])
-    }
-
-    #[inline(always)]
-    fn blend<L: Lanes<Real = f32>, I: Influences<L>, const NORMALS: bool>(
-        influences: &mut I,
-        at: At<'_>,
-        rest: Rest<L>,
-    ) -> ([L; 3], [L; 3]) {
-        let (v, n) = stretched::<L, I, NORMALS>(influences, at, rest.v, rest);
-        let q = dual_quaternion(influences, at);
-        (move_by(q, v), if NORMALS { turn_by(q[0], n) } else { n })
     }
 }
 

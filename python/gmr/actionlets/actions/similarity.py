@@ -10,6 +10,7 @@ mammals", J. Zool. 201 (1983) 135; for people A. L. Hof, "Scaling gait data to b
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import NamedTuple
 
 from gmr.actionlets.actions.units import ActionUnit
@@ -46,4 +47,9 @@ def pace(unit: ActionUnit, size: float) -> Pace:
 
 def leg_ratio(body: Body | None) -> float:
     """Length of a body's legs by that of the reference body, a man of 1.75 m; 1 for None."""
-    return 1.0 if body is None else body.leg_length / Body.of().leg_length
+    return 1.0 if body is None else body.leg_length / _reference_leg()
+
+
+@cache
+def _reference_leg() -> float:
+    return Body.of().leg_length

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import hashlib
 import math
 from collections.abc import Iterable, Iterator, Mapping
@@ -10,6 +9,7 @@ from itertools import product
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, Final
 
+from gmr.actionlets.actions.tables import nearest
 from gmr.actionlets.actions.taking import check_frames
 from gmr.actionlets.corpus.choices import Choice, Drawn, Fixed, choice
 from gmr.actionlets.corpus.making import versions
@@ -119,7 +119,7 @@ def _actions(library: Library, actions: Iterable[str]) -> tuple[str, ...]:
 
 def _settings(given: Mapping[str, str], body: str, actions: Iterable[str], fps: float) -> dict[str, Choice]:
     if unknown := [name for name in given if name not in _SETTINGS]:
-        raise GmrError(f"no setting is called '{unknown[0]}'; {_near(unknown[0], _SETTINGS)}")
+        raise GmrError(f"no setting is called '{unknown[0]}'. {nearest(unknown[0], _SETTINGS)}")
     texts = {name: given.get(name, default) for name, default in _SETTINGS.items()}
     found = {name: choice(text, name) for name, text in texts.items() if text is not None}
     for value in found["seconds"].values if "seconds" in found else ():
@@ -163,11 +163,11 @@ def _check_known(name: str, actions: Mapping[str, Mapping[str, Parameter]]) -> N
     every = {own for parameters in actions.values() for own in parameters}
     action, dot, own = name.rpartition(".")
     if dot and action not in actions:
-        raise GmrError(f"'{name}': no action '{action}' was asked for; {_near(action, actions)}")
+        raise GmrError(f"'{name}': no action '{action}' was asked for. {nearest(action, actions)}")
     known = set(actions[action]) if dot else every
     if own not in known:
         whose = f"the action '{action}' has" if dot else f"{listed(list(actions), 5)}: there is"
-        raise GmrError(f"{whose} no parameter '{own}'; {_near(own, known)}")
+        raise GmrError(f"{whose} no parameter '{own}'. {nearest(own, sorted(known))}")
 
 
 def _parameter(action: str, parameter: Parameter, text: str | None) -> Choice:
@@ -190,12 +190,3 @@ def _parameter(action: str, parameter: Parameter, text: str | None) -> Choice:
                 f" Where another action goes further, write {action}.{parameter.name}=... for this one"
             )
     return found
-
-
-def _near(name: str, known: Iterable[str]) -> str:
-    """The names nearest to one that is not known, or all."""
-    names = sorted(known)
-    near = difflib.get_close_matches(name, names, n=3)
-    if near:
-        return f"did you mean {' or '.join(near)}?"
-    return f"there are {listed(names, 30)}" if names else "there are none"

@@ -55,18 +55,14 @@ def page(found: Decomposed, name: str) -> str:
     ).html()
 
 
-def _facts(found: Decomposed) -> str:
-    facts = {
+def _facts(found: Decomposed) -> dict[str, str]:
+    return {
         "seconds": f"{found.score.duration:.1f}",
         "degrees of freedom": f"{len(found.recorded.dofs)}",
         "actionlets": f"{found.score.piece_count:,}",
         "median error": f"{found.median_rms_deg:.2f}°",
         "smaller than its samples": f"{found.ratio:.0f}×",
     }
-    return "\n".join(
-        element("div", element("dt", text(name)) + element("dd", text(value)))
-        for name, value in facts.items()
-    )
 
 
 def _verdict(found: Decomposed, moving: int) -> str:

@@ -23,20 +23,16 @@ __all__ = ["clip_groups", "facts", "sections"]
 _MOST_PLAYED: Final = 10
 
 
-def facts(summary: Summary) -> str:
-    """The dataset in figures, as terms and descriptions."""
-    shown = {
+def facts(summary: Summary) -> dict[str, str]:
+    """The dataset in figures."""
+    mirrored = {"Mirrored copies": f"{summary.mirrored_count:,}"} if summary.mirrored_count else {}
+    return {
         "Clips": f"{summary.clip_count:,}",
-        "Mirrored copies": f"{summary.mirrored_count:,}" if summary.mirrored_count else None,
+        **mirrored,
         "Duration": duration(summary.seconds),
         f"Frames at {summary.rate:g} Hz": f"{summary.frame_count:,}",
         "Joints": f"{summary.joint_count:,}",
     }
-    return "\n".join(_term(name, value) for name, value in shown.items() if value is not None)
-
-
-def _term(name: str, value: str) -> str:
-    return element("div", element("dt", text(name)) + element("dd", text(value)))
 
 
 def sections(evaluation: Evaluation, figures: Sequence[Figure]) -> str:

@@ -61,17 +61,13 @@ def headline(of: Comparison) -> str:
     )
 
 
-def _facts(of: Comparison) -> str:
-    facts = {
+def _facts(of: Comparison) -> dict[str, str]:
+    return {
         "vertices": f"{len(of.character.merged.vertices):,}",
         "joints": f"{len(of.character.joint_names):,}",
         "frames": f"{len(of.poses):,}",
         "seconds": f"{len(of.poses) * of.frame_time:.1f}",
     }
-    return "\n".join(
-        element("div", element("dt", text(name)) + element("dd", text(value)))
-        for name, value in facts.items()
-    )
 
 
 def _verdict(of: Comparison) -> str:

@@ -144,14 +144,14 @@ def _stand(like: Motion, scene: Scene, frame: int | None) -> _Stand:
 def _floor(like: Motion, scene: Scene, body: Body) -> float:
     """How high the lowest joint of the feet is where ``like`` stands on its ground."""
     upright = rotated(np.array(UP_TURNS[scene.up]), like.positions(dtype=np.float64))
-    lowest = [_lowest(frame, body) for frame in upright]
-    return float(np.quantile(lowest, _RESTING))
+    return float(np.quantile(_lowest(upright, body), _RESTING))
 
 
-def _lowest(places: Floats, body: Body) -> float:
-    """The height of the lowest joint of the feet in (J, 3) upright places."""
+def _lowest(places: Floats, body: Body) -> Floats:
+    """The height of the lowest joint of the feet in (..., J, 3) upright places."""
     parts = (f"{side}_{part}" for side in ("left", "right") for part in ("foot", "toe"))
-    return float(min(places[body.parts[part][0], 1] for part in parts if part in body.parts))
+    feet = [body.parts[part][0] for part in parts if part in body.parts]
+    return np.asarray(places[..., feet, 1].min(axis=-1), np.float64)
 
 
 def _straightest(like: Motion, body: Body) -> int:
