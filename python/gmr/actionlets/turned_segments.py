@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 from gmr.actionlets.anatomy import Anatomy
 from gmr.actionlets.body import Body
 from gmr.actionlets.dofs import SIDES
-from gmr.actionlets.standing_frame import standing_frame
 from gmr.editing.contacts import contacts
 from gmr.errors import ActionletError, GmrError
 from gmr.quaternions import about, conjugate, from_matrices, multiply, rotated
@@ -33,6 +32,8 @@ from gmr.skinning.driving.rest_poses import (
     motion_rest,
     shortest_turn,
 )
+from gmr.skinning.driving.standing_frame import standing_frame
+from gmr.tpose import leading_rest_frames
 
 __all__ = ["Turned", "turned_segments"]
 
@@ -110,7 +111,9 @@ def _resting(found: Anatomy, following: Following, frame: int | None) -> MotionR
     except GmrError:
         if frame is not None:
             raise
-        rest = motion_rest(whole, following.begins, up, standing_frame(found))
+        lead = leading_rest_frames(whole)
+        standing = lead + standing_frame(found.all_places, following.begins)
+        rest = motion_rest(whole, following.begins, up, standing)
     return rest
 
 

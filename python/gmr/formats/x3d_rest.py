@@ -22,6 +22,7 @@ from gmr.formats.x3d_parts import Stand
 from gmr.motion import Motion
 from gmr.quaternions import multiply, rotated
 from gmr.skinning.driving.rest_poses import MotionRest, heading_turn, motion_rest, shortest_turn
+from gmr.skinning.driving.standing_frame import standing_frame
 
 __all__ = ["default_turns", "rest_of"]
 
@@ -32,12 +33,6 @@ _SIDES = ("left", "right")
 _SAMPLES = 200
 _FEW = 4096
 """Frames of the beginning in which a rest pose is looked for."""
-_STANDING = (
-    ("head", "hips"),
-    *((f"{side}_up_leg", f"{side}_leg") for side in _SIDES),
-    *((f"{side}_leg", f"{side}_foot") for side in _SIDES),
-)
-"""Pairs of parts of which the first is right above the second in who stands."""
 
 
 def rest_of(
@@ -71,12 +66,7 @@ def rest_of(
 def _most_upright(motion: Motion, scene: Scene, begins: Mapping[str, int]) -> int:
     step = max(1, motion.frame_count // _SAMPLES)
     places = rotated(np.array(UP_TURNS[scene.up]), motion[::step].positions(dtype=np.float64))
-    upright = np.zeros(len(places))
-    for above, below in _STANDING:
-        if above in begins and below in begins:
-            way = places[:, begins[above]] - places[:, begins[below]]
-            upright += way[:, 1] / np.maximum(np.linalg.norm(way, axis=1), 1e-12)
-    return step * int(upright.argmax())
+    return step * standing_frame(places, begins)
 
 
 def default_turns(motion: Motion, rest: MotionRest, stands: Mapping[str, Stand]) -> dict[str, Floats]:

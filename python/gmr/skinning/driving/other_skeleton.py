@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr import _core
-from gmr.body.measures import UP_TURNS, path
+from gmr.body.measures import UP_TURNS
 from gmr.editing.scene import Scene, scene_of
 from gmr.errors import GmrError, SkeletonError
 from gmr.forest import home
@@ -25,6 +25,7 @@ from gmr.skinning.driving.drive_character import drive
 from gmr.skinning.driving.driven import Driven, DrivingReport
 from gmr.skinning.driving.following import Names
 from gmr.skinning.driving.rest_poses import MotionRest, motion_rest, with_flat_feet
+from gmr.skinning.driving.standing_frame import standing_frame
 from gmr.skinning.nodes import Nodes
 from gmr.skinning.transforms import continuous
 
@@ -130,7 +131,8 @@ def _stand(like: Motion, scene: Scene, frame: int | None) -> _Stand:
     except GmrError:
         if frame is not None:
             raise
-        rest = motion_rest(like, begins, scene.up, _straightest(like, body))
+        upright = rotated(np.array(UP_TURNS[scene.up]), like.positions(dtype=np.float64))
+        rest = motion_rest(like, begins, scene.up, standing_frame(upright, begins))
     if "frame" in rest.said:
         rest = with_flat_feet(rest, like, scene.up, _feet(like, body))
     # A joint's frame is that of its children's bones.
@@ -152,18 +154,6 @@ def _lowest(places: Floats, body: Body) -> Floats:
     parts = (f"{side}_{part}" for side in ("left", "right") for part in ("foot", "toe"))
     feet = [body.parts[part][0] for part in parts if part in body.parts]
     return np.asarray(places[..., feet, 1].min(axis=-1), np.float64)
-
-
-def _straightest(like: Motion, body: Body) -> int:
-    """The frame in which the legs are straightest, both together."""
-    places = like.positions(dtype=np.float64)
-    straight = np.zeros(like.frame_count)
-    for side in ("left", "right"):
-        top, end = (body.parts[f"{side}_{part}"][0] for part in ("up_leg", "foot"))
-        leg = places[:, path(like.skeleton, top, end)]
-        along = np.linalg.norm(np.diff(leg, axis=1), axis=2).sum(axis=1)
-        straight += np.linalg.norm(leg[:, -1] - leg[:, 0], axis=1) / along
-    return int(straight.argmax())
 
 
 def _feet(like: Motion, body: Body) -> list[tuple[int, int | None, list[int]]]:
