@@ -9,14 +9,14 @@ BROWSER := x_ite@15.0.1
 INSTALL := . $(BIN)/activate && python -m pip install --quiet --no-build-isolation
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test build develop check-machine check-rust check-python smoke bench fuzz format clean help
+.PHONY: demo test build develop check-machine check-rust check-style check-python smoke bench fuzz format clean help
 
 demo: build ## Evaluate the clips that ship with gmr and write the report
 	$(BIN)/gmr demo --out $(REPORT)
 
 test: develop ## Everything that a contributor needs before a commit
-	$(MAKE) --no-print-directory --jobs=2 --output-sync=line check-rust check-python
-	$(MAKE) --no-print-directory smoke
+	$(MAKE) --no-print-directory --jobs=2 --output-sync=line check-rust check-style
+	$(MAKE) --no-print-directory check-python smoke
 
 build: $(VENV)/.gmr ## Build gmr into .venv/
 
@@ -40,11 +40,13 @@ check-rust:
 	MAKEFLAGS= cargo test --workspace --quiet
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
 
-check-python:
+check-style:
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
-	$(BIN)/pytest
+
+check-python:
+	$(BIN)/pytest --numprocesses=auto --dist=worksteal
 
 smoke:
 	$(BIN)/gmr bench --smoke

@@ -31,6 +31,11 @@ WALK = demo_folder() / "07_01.bvh"
 SLOW = 60_000
 """Milliseconds: the scene is drawn without a graphics card."""
 
+FRAMES = """count => new Promise(done => {
+    const next = () => count-- > 0 ? requestAnimationFrame(next) : done();
+    next();
+})"""
+
 Pixels = NDArray[np.int16]
 
 
@@ -58,19 +63,30 @@ class Watched:
         self.page.goto(f"{address}?fixedDpr=1")
         self.page.locator("canvas[data-engine]").wait_for()
 
-    def settled(self, name: str) -> Pixels:
-        """(H, W, 3) the scene when it does not change any more; kept as a picture."""
+    def settled(self, name: str, *, other_than: Pixels | None = None) -> Pixels:
+        """(H, W, 3) the scene when it does not change any more; kept as a picture.
+
+        Args:
+            name: of the picture.
+            other_than: the scene before, where it must change: a slow machine may yet rest in it.
+        """
         before = self.pixels()
-        for _ in range(80):
-            self.page.wait_for_timeout(700)
+        for _ in range(120):
+            self.frames(10)
             now = self.pixels()
-            if np.ptp(now) > 100 and differing(before, now) == 0:
+            at_rest = np.ptp(now) > 100 and differing(before, now) == 0
+            if at_rest and (other_than is None or differing(other_than, now) > 0):
                 break
             before = now
         else:
-            pytest.fail(f"the scene is blank, or does not come to rest: {name}")
+            pytest.fail(f"the scene is blank, does not come to rest, or has not changed: {name}")
         Image.fromarray(now.astype(np.uint8)).save(self.shots / f"{name}.png")
         return now
+
+    def frames(self, count: int) -> None:
+        """Wait until the browser has drawn so many frames, however long it takes, and for 0.3 s at least."""
+        self.page.evaluate(FRAMES, count)
+        self.page.wait_for_timeout(300)
 
     def pixels(self) -> Pixels:
         url = self.page.locator("canvas[data-engine]").evaluate("canvas => canvas.toDataURL()")
@@ -104,11 +120,14 @@ def watched(browser: Browser, tmp_path: Path) -> Iterator[Watched]:
     page.close()
 
 
-def go_to(watched: Watched, seconds: str) -> Pixels:
+def go_to(watched: Watched, seconds: str, *, other_than: Pixels | None = None) -> Pixels:
     """The saved page at a time, which pauses it; another than it shows at first, or nothing is asked."""
-    watched.page.locator("input").first.fill(seconds)
-    watched.page.wait_for_timeout(1000)
-    return watched.settled(f"at_{seconds}")
+    shown = watched.page.locator("input").first
+    # A playing page may step on between the key and the pause.
+    while float(shown.input_value() or "nan") != float(seconds):
+        shown.fill(seconds)
+        watched.frames(3)
+    return watched.settled(f"at_{seconds}", other_than=other_than)
 
 
 def test_a_saved_page_plays_alone(watched: Watched, tmp_path: Path) -> None:
@@ -118,11 +137,12 @@ def test_a_saved_page_plays_alone(watched: Watched, tmp_path: Path) -> None:
     assert page.seconds == pytest.approx(gmr.read(WALK).duration, abs=1 / 30)
     watched.open(path.as_uri())
     assert watched.page.title() == "07_01.bvh"
-    early, late = go_to(watched, "0.7"), go_to(watched, "1.9")
+    early = go_to(watched, "0.7")
+    late = go_to(watched, "1.9", other_than=early)
     assert coloured(early) > 300
     assert coloured(late) > 300
     assert differing(early, late) > 500
-    again = go_to(watched, "0.7")
+    again = go_to(watched, "0.7", other_than=late)
     assert differing(early, again) < differing(early, late) / 5
     shown = watched.page.locator("input").first
     shown.locator("xpath=preceding::button[1]").dispatch_event("click")
@@ -145,7 +165,8 @@ def test_a_saved_skin_bends(watched: Watched, tmp_path: Path, look: Look) -> Non
         look = Look(weights=character.joint_names[1])
     gmr.view.save(character, path, look=look)
     watched.open(path.as_uri())
-    straight, bent = go_to(watched, "0.1"), go_to(watched, "1.0")
+    straight = go_to(watched, "0.1")
+    bent = go_to(watched, "1.0", other_than=straight)
     assert differing(straight, bent) > 500
     assert watched.complaints == []
     assert watched.asked == [f"{path.as_uri()}?fixedDpr=1"]
@@ -194,12 +215,11 @@ def test_the_live_page_plays_pauses_and_steps(
     page.wait_for_function(
         "([e, value]) => e.ariaValueNow === value", arg=[slider.element_handle(), str(last - 1)]
     )
-    end = watched.settled("end")
+    end = watched.settled("end", other_than=first)
     assert coloured(end) > 300
     assert differing(first, end) > 500
     page.get_by_label("Skeleton").dispatch_event("click")
-    page.wait_for_timeout(1000)
-    bare = watched.settled("without_skeleton")
+    bare = watched.settled("without_skeleton", other_than=end)
     assert coloured(bare) < coloured(end)
     assert watched.complaints == []
     assert only_this_machine(watched)
@@ -233,25 +253,28 @@ def test_the_live_page_blends_and_colours_skins(
     watched.open(served[0])
     page = watched.page
     watched.press("button", "Pause")
+    page.get_by_role("button", name="Play").wait_for()
+    watched.press("button", "Start")
+    page.get_by_text("0.00 of ", exact=False).wait_for()
+    straight = watched.settled("straight")
     slider = page.locator("input[inputmode=decimal]").first
     slider.fill("22")
     slider.press("Enter")
-    page.wait_for_timeout(500)
+    watched.settled("boned", other_than=straight)
     page.get_by_label("Skeleton").dispatch_event("click")
     page.wait_for_timeout(1000)
     linear = watched.settled("lbs")
     choose(watched, "Blending", "DQBS")
-    dual = watched.settled("dqbs")
+    dual = watched.settled("dqbs", other_than=linear)
     choose(watched, "Blending", "LBS")
-    again = watched.settled("lbs_again")
+    again = watched.settled("lbs_again", other_than=dual)
     assert 0 < differing(linear, dual) < 2_000, "the elbow alone looks other"
     assert differing(linear, again) == 0
     # Coloured by weights the vertices are those of gmr's kernels, in their place among the browser's.
     choose(watched, "Colours", gmr.read_character(DATA / "rigged_simple.gltf").joint_names[1])
-    weights = watched.settled("weights")
+    weights = watched.settled("weights", other_than=linear)
     page.get_by_label("Skin", exact=True).dispatch_event("click")
-    page.wait_for_timeout(1000)
-    bare = watched.settled("bare")
+    bare = watched.settled("bare", other_than=weights)
     covered, by_kernels = (np.abs(one - bare).max(axis=-1) > 24 for one in (linear, weights))
     assert (covered ^ by_kernels).sum() < 0.05 * covered.sum()
     assert differing(linear, weights) > 2_000
@@ -264,4 +287,3 @@ def choose(watched: Watched, label: str, option: str) -> None:
     field.evaluate("element => element.scrollIntoView()")
     field.dispatch_event("click")
     watched.press("option", option)
-    watched.page.wait_for_timeout(1000)
