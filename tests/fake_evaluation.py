@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ def fake_evaluation(
     *,
     mirrored: bool = False,
     trackings: tuple[str, ...] = ("time",),
+    scenarios: tuple[str, ...] = ("constant",),
     seed: int = 7,
     replay_seconds: float = 30.0,
 ) -> Evaluation:
@@ -46,7 +48,7 @@ def fake_evaluation(
         copies = [False, True] * clips
     popularity = random.pareto(1.3, len(names)) * (random.random(len(names)) < 0.5)
     return _assembled(
-        names, speed, turn, copies, popularity, frames_per_clip, trackings, replay_seconds, random
+        names, speed, turn, copies, popularity, frames_per_clip, trackings, scenarios, replay_seconds, random
     )
 
 
@@ -85,6 +87,7 @@ def _assembled(
     popularity: NDArray[Any],
     frames: int,
     trackings: tuple[str, ...],
+    scenarios: tuple[str, ...],
     replay_seconds: float,
     random: np.random.Generator,
 ) -> Evaluation:
@@ -118,6 +121,7 @@ def _assembled(
             "frame": frame,
             "count": played,
             "seconds": frame / RATE,
+            "tracking": np.full(len(clip), trackings[0], object),
         }
     )
     total = np.bincount(clip, played, count)
@@ -135,7 +139,7 @@ def _assembled(
             "used_share": np.bincount(clip, played > 0, count) / frames,
         }
     )
-    trials = _trials(trackings, random)
+    trials = _trials(trackings, scenarios, random)
     replay = _replay(names, replay_seconds, random)
     return Evaluation(
         dataset="fake",
@@ -170,10 +174,10 @@ def _assembled(
     )
 
 
-def _trials(trackings: tuple[str, ...], random: np.random.Generator) -> Table:
+def _trials(trackings: tuple[str, ...], scenarios: tuple[str, ...], random: np.random.Generator) -> Table:
     speed, turn = (grid.ravel() for grid in np.meshgrid(SPEEDS, TURNS, indexing="ij"))
     columns: dict[str, list[Any]] = {}
-    for tracking in trackings:
+    for tracking, scenario in product(trackings, scenarios):
         n = len(speed)
         drift = (
             0.05
@@ -185,7 +189,7 @@ def _trials(trackings: tuple[str, ...], random: np.random.Generator) -> Table:
         jumps = 3 + 2 * np.abs(turn) / 100 + random.uniform(0, 1, n)
         new = {
             "dataset": ["fake"] * n,
-            "scenario": ["constant"] * n,
+            "scenario": [scenario] * n,
             "tracking": [tracking] * n,
             "speed": speed,
             "turn_rate_deg": turn,
@@ -205,7 +209,10 @@ def _trials(trackings: tuple[str, ...], random: np.random.Generator) -> Table:
             "intra_clip_per_second": jumps * 0.25,
             "forced_end_per_second": jumps * 0.05,
             "clip_count": random.integers(2, 30, n),
+            "switched_speed": np.full(n, 4.0 if scenario == "switching" else np.nan),
+            "switch_every": np.full(n, 5.0 if scenario == "switching" else np.nan),
         }
+        new["speed_error_share"] = np.asarray(new["speed_error"]) / speed
         for name, values in new.items():
             columns.setdefault(name, []).extend(np.asarray(values).tolist())
     return Table(columns)
@@ -234,6 +241,7 @@ def _transitions(
             "from_seconds": from_frame / RATE,
             "to_seconds": to_frame / RATE,
             "discontinuity_mean": random.uniform(0.01, 0.1, n),
+            "tracking": np.full(n, "time", object),
         }
     )
 

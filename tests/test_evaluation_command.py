@@ -37,7 +37,7 @@ def test_the_verdict_goes_to_stdout_and_progress_to_stderr(folder: Path, capsys:
     assert run(folder, *SMALL) == 0
     said = capsys.readouterr()
     assert said.out.startswith("This dataset does what it is asked in ")
-    for phase in ("reading: 2,", "preparing,", "simulating: 6,", "measuring,"):
+    for phase in ("reading: 2,", "preparing,", "simulating: 12,", "measuring,"):
         assert phase in said.err
     assert "reading" not in said.out
     assert all(len(line) <= 100 for line in said.out.splitlines())
@@ -55,7 +55,8 @@ def test_json_is_one_object_with_the_figures(folder: Path, capsys: Captured) -> 
     assert (found["clips"], found["mirrored_clips"]) == (2, 2)
     assert found["settings"]["preset"] == "mig2022"
     assert found["settings"]["speeds"] == [1.0, 2.0]
-    assert [row["turn_rate_deg"] for row in found["trials"]] == [-50.0, 0.0, 50.0] * 2
+    assert [row["turn_rate_deg"] for row in found["trials"]] == [-50.0, 0.0, 50.0] * 4
+    assert [row["scenario"] for row in found["trials"]] == ["constant"] * 6 + ["switching"] * 6
     assert found["verdict"]["headline"].startswith("This dataset does what it is asked in ")
     assert found["failed"] == {}
 
@@ -82,7 +83,7 @@ def test_tables_are_json_where_pyarrow_is_missing(
     suffixes = {path.suffix for path in (tmp_path / "tables").iterdir()}
     assert suffixes == {".csv", ".json"}
     trials = json.loads((tmp_path / "tables" / "trials.json").read_text())
-    assert [row["speed"] for row in trials] == [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]
+    assert [row["speed"] for row in trials] == [1.0, 1.0, 1.0, 2.0, 2.0, 2.0] * 2
 
 
 def test_file_names_that_are_no_utf_8_do_no_harm(folder: Path, tmp_path: Path, capsys: Captured) -> None:
@@ -190,9 +191,11 @@ def test_ranges_have_both_ends(folder: Path, capsys: Captured) -> None:
 
 def test_ctrl_c_is_one_sentence_and_leaves_nothing(folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    long = ("--speeds", "0.5:4:0.1", "--turn-rates", "-100:100:5", "-o", out / "report.html")
+    long = ("--speeds", "0.5:4:0.1", "--turn-rates", "-100:100:5", "--scenario", "constant")
     with subprocess.Popen(
-        [*PROGRAM, folder, *long, "--tables", out / "tables"], stderr=subprocess.PIPE, text=True
+        [*PROGRAM, folder, *long, "-o", out / "report.html", "--tables", out / "tables"],
+        stderr=subprocess.PIPE,
+        text=True,
     ) as running:
         assert running.stderr is not None
         for line in running.stderr:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 import shutil
 import statistics
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 
 import gmr
 from gmr.evaluation import Evaluation, Table
+from gmr.evaluation.usage import plays
 from gmr.matching import Database
 from gmr.matching.trial import Profile, run_trials
 from locomotion import Arc
@@ -46,10 +48,17 @@ def found(folder: Path) -> Evaluation:
     return gmr.evaluate(folder, **GRID)  # type: ignore[arg-type]
 
 
-def trial(found: Evaluation, column: str, speed: float, turn_rate: float) -> float:
+def trial(found: Evaluation, column: str, speed: float, turn_rate: float, kind: str = "constant") -> float:
     trials = found.measured.trials
-    chosen = (trials["speed"] == speed) & (trials["turn_rate_deg"] == turn_rate)
+    chosen = (
+        (trials["speed"] == speed) & (trials["turn_rate_deg"] == turn_rate) & (trials["scenario"] == kind)
+    )
     return float(trials[column][chosen][0])
+
+
+def constant(found: Evaluation) -> Table:
+    trials = found.measured.trials
+    return trials.take(trials["scenario"] == "constant")
 
 
 def test_what_is_in_the_clips_is_kept_and_what_is_not_is_not(found: Evaluation) -> None:
@@ -62,7 +71,7 @@ def test_what_is_in_the_clips_is_kept_and_what_is_not_is_not(found: Evaluation) 
 
 
 def test_the_headline_counts_the_trials_within_the_limits(found: Evaluation) -> None:
-    trials, limits = found.measured.trials, found.summary.settings["limits"]
+    trials, limits = constant(found), found.summary.settings["limits"]
     held = trials["offset_mean"] <= limits["offset"]
     held &= np.abs(trials["speed_error"]) <= limits["speed"] * trials["speed"]
     held &= np.abs(trials["turn_rate_error_deg"]) <= limits["turn_rate_deg"]
@@ -103,13 +112,19 @@ def test_coverage_has_the_speeds_and_turns_of_the_clips(found: Evaluation) -> No
 
 def test_usage_has_every_frame_with_its_time_in_the_file(found: Evaluation) -> None:
     usage = found.measured.usage
-    assert len(usage) == 4 * 361
+    assert len(usage) == 2 * 4 * 361
     np.testing.assert_allclose(usage["seconds"], usage["frame"] / 60)
-    assert usage["count"].sum() == 6 * 30 * 60
+    for scenario in ("constant", "switching"):
+        assert usage["count"][usage["scenario"] == scenario].sum() == 6 * 30 * 60
+    both = plays(usage)
+    assert both["frame"].tolist() == usage["frame"][: 4 * 361].tolist()
+    assert both["count"].sum() == 2 * 6 * 30 * 60
+    played = found.measured.clips["played_seconds"]
+    assert played.sum() == pytest.approx(2 * 6 * 30)
 
 
 def test_the_replay_is_the_trial_that_strayed_farthest(found: Evaluation) -> None:
-    worst = int(np.argmax(found.measured.trials["offset_mean"]))
+    worst = int(np.argmax(constant(found)["offset_mean"]))
     replay = found.replay
     assert replay.speed == found.measured.trials["speed"][worst]
     assert replay.turn_rate_deg == found.measured.trials["turn_rate_deg"][worst]
@@ -160,7 +175,7 @@ def test_motions_can_be_given_without_files(folder: Path, found: Evaluation) -> 
 
 def test_the_grid_can_be_an_array(folder: Path) -> None:
     found = gmr.evaluate(folder, speeds=np.array([2.0, 1.0]), turn_rates_deg=np.zeros(1))  # type: ignore[arg-type]
-    assert found.measured.trials["speed"].tolist() == [1.0, 2.0]
+    assert found.measured.trials["speed"].tolist() == [1.0, 2.0] * 2
 
 
 def test_open_loop_does_not_track_the_path(folder: Path) -> None:
@@ -170,9 +185,42 @@ def test_open_loop_does_not_track_the_path(folder: Path) -> None:
     assert abs(trial(found, "speed_error", 1.0, 50.0)) < 0.05
 
 
+def test_both_trackings_are_run_beside_each_other_as_each_alone(folder: Path, found: Evaluation) -> None:
+    small = {"speeds": (1.0,), "turn_rates_deg": (-50.0, 0.0)}
+    both = gmr.evaluate(folder, tracking=("time", "velocity"), **small)  # type: ignore[arg-type]
+    alone = [gmr.evaluate(folder, tracking=name, **small) for name in ("time", "velocity")]  # type: ignore[arg-type]
+    for name in ("trials", "usage", "transitions"):
+        assert both.tables()[name] == Table.joined([one.tables()[name] for one in alone])
+    assert both.measured.trials["scenario"].tolist() == (["constant"] * 2 + ["switching"] * 2) * 2
+    assert both.verdict.headline == alone[0].verdict.headline
+    assert "Asked for speed and turn rate only, it does so in 1 of 2 trials." in both.verdict.sentences
+
+
+def test_every_row_of_the_trials_finds_its_log(folder: Path, found: Evaluation) -> None:
+    assert found.simulation is not None
+    for row, wanted in enumerate(found.measured.trials.rows()):
+        asked, log, place = found.simulation[row]
+        assert (asked.scenario, asked.speed, asked.turn_rate_deg, log.tracking) == (
+            *(wanted["scenario"], wanted["speed"], wanted["turn_rate_deg"], wanted["tracking"]),
+        )
+        recorded = slice(int(log.recorded_from[place]), int(log.lengths[place]))
+        away = np.hypot(log.x - log.ref_x, log.z - log.ref_z)[place, recorded]
+        assert away.mean() == pytest.approx(wanted["offset_mean"])
+    assert len(found.simulation.profiles) == 12
+
+
+def test_an_evaluation_is_pickled_without_what_was_simulated(found: Evaluation) -> None:
+    again = pickle.loads(pickle.dumps(found))
+    assert again.simulation is None
+    assert again.tables() == found.tables()
+    assert again.verdict == found.verdict
+
+
 def test_the_authors_pacing_can_be_asked_for(folder: Path) -> None:
     found = gmr.evaluate(folder, preset="mig2022", **GRID)  # type: ignore[arg-type]
-    assert found.measured.trials["seconds"].tolist() == [25.0, 5.0, 25.0] * 2
+    assert constant(found)["seconds"].tolist() == [25.0, 5.0, 25.0] * 2
+    switching = found.measured.trials.take(found.measured.trials["scenario"] == "switching")
+    assert switching["seconds"].tolist() == [25.0] * 6
 
 
 def test_a_broken_file_is_named_and_the_others_are_evaluated(folder: Path, tmp_path: Path) -> None:
@@ -234,6 +282,14 @@ def test_settings_that_make_no_sense_are_refused_before_anything_is_read(tmp_pat
     missing = tmp_path / "missing"
     with pytest.raises(ValueError, match="unknown tracking"):
         gmr.evaluate(missing, tracking="speed")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="unknown scenario"):
+        gmr.evaluate(missing, scenarios="slalom")
+    with pytest.raises(ValueError, match="each tracking once"):
+        gmr.evaluate(missing, tracking=("time", "time"))
+    with pytest.raises(ValueError, match="switched speed must be"):
+        gmr.evaluate(missing, switched_speed=0.0)
+    with pytest.raises(TypeError, match="list of numbers"):
+        gmr.evaluate(missing, switch_every="5")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="unknown preset"):
         gmr.evaluate(missing, preset="mig2023")
     with pytest.raises(ValueError, match="at least one speed"):

@@ -26,7 +26,7 @@ def shown(*stretches: tuple[int, int]) -> np.ndarray[tuple[int, ...], np.dtype[n
 
 def test_usage_has_every_frame_and_counts_every_recorded_step() -> None:
     log = walked(TRIALS, FRAMES, rows=shown((0, 100)))
-    table = usage_table("set", "constant", play_counts(log, FRAMES), FRAMES)
+    table = usage_table("set", "constant", "time", play_counts(log, FRAMES), FRAMES)
     assert len(table) == len(FRAMES) == 241 + 181 + 181
     assert table["count"].sum() == 2 * 30 * RATE
     assert table["count"][250:].max() == 0
@@ -49,7 +49,7 @@ def test_clips_tell_their_share_of_the_time_and_of_their_frames() -> None:
 def test_a_jump_is_told_by_its_frames_and_its_kind() -> None:
     # Recording starts at step 300: 60 steps of a, to the middle of b, back within b, off its end into a.
     log = walked(TRIALS[:1], FRAMES, rows=shown((0, 241), (0, 120), (261, 50), (251, 171), (5, 100))[:1])
-    table = transitions_table("set", "constant", transitions_of(log, FRAMES), FRAMES)
+    table = transitions_table("set", "constant", "time", transitions_of(log, FRAMES), FRAMES)
     pairs = {
         (row["from_clip"], row["from_frame"], row["to_clip"], row["to_frame"]): (row["kind"], row["count"])
         for row in table.rows()
@@ -86,7 +86,7 @@ def test_transitions_per_second_are_the_sum_of_their_kinds() -> None:
 def test_without_a_jump_the_table_is_empty_and_has_its_columns() -> None:
     frames = frames_of({"long.bvh": Arc(40.0, 1.0)})
     log = walked(TRIALS, frames)
-    table = transitions_table("set", "constant", transitions_of(log, frames), frames)
+    table = transitions_table("set", "constant", "time", transitions_of(log, frames), frames)
     assert len(table) == 0
     assert table.column_names[:8] == (
         *("dataset", "scenario", "from_clip", "from_frame", "to_clip", "to_frame", "kind", "count"),

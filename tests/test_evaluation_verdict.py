@@ -38,7 +38,7 @@ def judged(
         trials_table("set", grid, tracking, log, transitions_of(log, frames), frames),
         coverage_table("set", frames),
         clips_table("set", counts, frames),
-        usage_table("set", "constant", counts, frames),
+        usage_table("set", "constant", "time", counts, frames),
         **said,  # type: ignore[arg-type]
     )
 

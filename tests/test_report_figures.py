@@ -238,3 +238,17 @@ def test_clips_of_other_names_are_drawn_alike(evaluation: Evaluation) -> None:
     renamed = with_names(evaluation, {first: "x"})
     assert isinstance(renamed.measured, Tables)
     assert len(clip_usage(renamed).data["bars"]) == len(clip_usage(evaluation).data["bars"])
+
+
+def test_every_scenario_and_tracking_has_maps_of_its_own() -> None:
+    both = fake_evaluation(20, scenarios=("constant", "switching"), trackings=("time", "velocity"))
+    maps = {
+        figure.name: figure.title for figure in figures(both) if figure.name.startswith("trial_map_holds")
+    }
+    assert list(maps) == [
+        "trial_map_holds",
+        "trial_map_holds_switching",
+        "trial_map_holds_velocity",
+        "trial_map_holds_switching_velocity",
+    ]
+    assert len(set(maps.values())) == 4

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
 import numpy as np
@@ -75,6 +75,21 @@ class Table:
         """The table of some rows: their indices in the order wanted, or a mask of N booleans."""
         chosen = np.asarray(rows)
         return Table({name: column[chosen] for name, column in self._columns.items()})
+
+    @classmethod
+    def joined(cls, tables: Sequence[Table]) -> Table:
+        """The rows of several tables of the same columns, one table after the other.
+
+        Raises:
+            ValueError: there is no table, or one has other columns.
+        """
+        if len({table.column_names for table in tables}) != 1:
+            raise ValueError(
+                "tables can be joined that have the same columns in the same order, one at least"
+            )
+        return cls(
+            {name: np.concatenate([table[name] for table in tables]) for name in tables[0].column_names}
+        )
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Table):

@@ -29,6 +29,7 @@ Examples:
   gmr evaluate takes/ --tables figures/        every number as CSV and Parquet too
   gmr evaluate takes/ --speeds 0.5:4:0.5 --turn-rates -180:180:45
   gmr evaluate takes/ --preset mig2022         the pacing of the paper's authors
+  gmr evaluate takes/ --tracking both          closed loop and open loop
   gmr evaluate takes/ --name left_foot=foot_l --name right_foot=foot_r
   gmr evaluate takes/ --json > found.json      for a machine
 
@@ -56,10 +57,17 @@ Exit codes: 0 all files were evaluated, 1 some or all could not be (they are nam
 )
 @click.option(
     "--tracking",
-    type=click.Choice(["time", "velocity"]),
+    type=click.Choice(["time", "velocity", "both"]),
     default="time",
     show_default=True,
     help="Steer to where the path has the character at each time, or only ask for speed and turn rate.",
+)
+@click.option(
+    "--scenario",
+    type=click.Choice(["constant", "switching", "both"]),
+    default="both",
+    show_default=True,
+    help="Trials at one speed throughout, or at two in turn.",
 )
 @click.option(
     "--preset", type=click.Choice(["mig2022"]), help="Pace the trials as the authors of the paper did."
@@ -74,6 +82,7 @@ def evaluate(
     tables: Path | None,
     mirror: bool,
     tracking: str,
+    scenario: str,
     speeds: tuple[float, ...] | None,
     turn_rates: tuple[float, ...] | None,
     preset: str | None,
@@ -91,10 +100,13 @@ def evaluate(
     shows it all; it is one HTML file that opens without a network.
     """
     import gmr
-    from gmr.evaluation.scenario import DEFAULT_SPEEDS, DEFAULT_TURN_RATES_DEG, constant_trials
+    from gmr.evaluation.scenario import DEFAULT_SPEEDS, DEFAULT_TURN_RATES_DEG, planned_trials
 
+    scenarios = ("constant", "switching") if scenario == "both" else (scenario,)
     try:
-        constant_trials(speeds or DEFAULT_SPEEDS, turn_rates or DEFAULT_TURN_RATES_DEG, preset or "even")
+        planned_trials(
+            scenarios, speeds or DEFAULT_SPEEDS, turn_rates or DEFAULT_TURN_RATES_DEG, preset or "even"
+        )
     except ValueError as error:
         raise click.UsageError(f"{error}.") from error
     phases = Phases(quiet)
@@ -104,7 +116,8 @@ def evaluate(
             folder,
             preset=preset,
             mirror=mirror,
-            tracking=cast("Tracking", tracking),
+            scenarios=scenarios,
+            tracking=("time", "velocity") if tracking == "both" else cast("Tracking", tracking),
             speeds=speeds,
             turn_rates_deg=turn_rates,
             threads=threads,

@@ -101,7 +101,8 @@ def complete(
         fill: makes what is missing; see :func:`gmr.completion.synthesised`.
         dataset: what the whole is called.
         progress: called with the name of a phase, how much of it is done, and of how much.
-        settings: of :func:`gmr.evaluate`, for both evaluations.
+        settings: of :func:`gmr.evaluate`, for both evaluations; trials at one speed only by default, for they
+            tell the holes.
 
     Returns:
         Both evaluations and what was added. A dataset without holes is given back with nothing added.
@@ -114,6 +115,7 @@ def complete(
     def phase(name: str) -> Progress:
         return lambda what, done, of: tell(f"{name}: {what}", done, of)
 
+    settings = {"scenarios": "constant", **settings}
     before = evaluate(motions, progress=phase("before"), **settings)
     like = next(motion for name, motion in motions.items() if name not in before.failed)
     added: dict[str, Motion] = {}

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.evaluation.usage import plays
 from gmr.evaluation.words import count, duration, listing, percent, some_of
 from gmr.table import Table
 
@@ -59,7 +60,7 @@ def clip_sentences(clips: Table, usage: Table) -> Iterator[str]:
     together = _Clips.of(clips)
     yield _carrying(together)
     yield _never_played(together)
-    yield f"Of all frames, {percent(float(np.mean(usage['count'] > 0)))} are shown at least once."
+    yield f"Of all frames, {percent(float(np.mean(plays(usage)['count'] > 0)))} are shown at least once."
 
 
 def _carrying(clips: _Clips) -> str:

@@ -14,23 +14,26 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from gmr.errors import DatasetError, FormatWarning
-from gmr.evaluation.coverage import coverage_table
-from gmr.evaluation.frames import Frames
-from gmr.evaluation.log import Log
+from gmr.evaluation.measured import measured
 from gmr.evaluation.regions import Limits
 from gmr.evaluation.replay import replay_of, worst_trial
-from gmr.evaluation.result import Evaluation, Summary, Tables
-from gmr.evaluation.scenario import DEFAULT_SPEEDS, DEFAULT_TURN_RATES_DEG, Trial, constant_trials
-from gmr.evaluation.transitions import transitions_of, transitions_table
-from gmr.evaluation.trials import trials_table
-from gmr.evaluation.usage import clips_table, play_counts, usage_table
+from gmr.evaluation.result import Evaluation, Summary
+from gmr.evaluation.scenario import (
+    DEFAULT_SPEEDS,
+    DEFAULT_TURN_RATES_DEG,
+    SWITCH_EVERY,
+    SWITCHED_SPEED,
+    Switching,
+    planned_trials,
+)
+from gmr.evaluation.simulation import frames_of, simulated
 from gmr.evaluation.verdict import verdict
 from gmr.evaluation.words import some_of
 from gmr.formats.folder import read_folder
 from gmr.formats.registry import suffixes
 from gmr.matching.database import Database, named
 from gmr.matching.prepare import unit_text
-from gmr.matching.trial import Profile, Segment, Tracking, TrialLog, run_trials
+from gmr.matching.trial import Tracking
 from gmr.motion import Motion
 from gmr.threads import thread_count
 
@@ -47,10 +50,13 @@ def evaluate(
     source: Source,
     *,
     preset: str | None = None,
+    scenarios: str | Sequence[str] = ("constant", "switching"),
     mirror: bool = False,
-    tracking: Tracking = "time",
+    tracking: Tracking | Sequence[Tracking] = "time",
     speeds: Sequence[float] | None = None,
     turn_rates_deg: Sequence[float] | None = None,
+    switched_speed: float = SWITCHED_SPEED,
+    switch_every: float = SWITCH_EVERY,
     threads: int | None = None,
     progress: Progress | None = None,
     names: Mapping[str, str | int] | None = None,
@@ -59,18 +65,23 @@ def evaluate(
 ) -> Evaluation:
     """Measure what a set of locomotion clips can do.
 
-    A character made of the clips is sent along paths of constant speed and turn rate by motion matching; the
-    tables say how well it kept to them, which frames it used, and which speeds and turn rates the clips hold.
+    A character made of the clips is sent along paths of constant turn rate, at one speed or at two in turn,
+    by motion matching; the tables say how well it kept to them, which frames it used, and which speeds and
+    turn rates the clips hold.
 
     Args:
         source: a folder of motion files, or motions, by name or with names of their own.
         preset: pacing of the trials: "mig2022" for the durations of the paper's authors; by default every
             trial has 3 s of run-up, 2 s to settle and 30 s that are recorded.
+        scenarios: "constant": each trial keeps its speed; "switching": the speed alternates with
+            ``switched_speed``; both by default.
         mirror: add the mirror image of each clip.
         tracking: "time": the character is steered to where the path has it at each time; "velocity": it is
-            only asked for the speed and turn rate.
+            only asked for the speed and turn rate; or both, each in trials of its own.
         speeds: metres per second; 1 to 3 in steps of 0.25 by default.
         turn_rates_deg: degrees per second, positive to the left; -100 to 100 in steps of 25 by default.
+        switched_speed: the other speed of switching trials, metres per second.
+        switch_every: seconds from one switch to the next.
         threads: how many to use, all cores by default (or 0); the result does not depend on it.
         progress: called with the name of a phase ("reading", "preparing", "simulating", "measuring"), how
             much of it is done, and of how much; what it raises ends the evaluation.
@@ -85,17 +96,19 @@ def evaluate(
     Raises:
         DatasetError: there is no motion, none is usable, or hips, legs or feet are not found.
         FormatError: there is no such folder; or a file cannot be read and ``errors`` is "raise".
-        ValueError: a speed, turn rate, preset, tracking or thread count that makes no sense.
+        ValueError: a speed, turn rate, preset, scenario, tracking or thread count that makes no sense.
     """
-    if tracking not in ("time", "velocity"):
-        raise ValueError(f"unknown tracking {tracking!r}; known are time, velocity")
+    trackings = _trackings(tracking)
     if names is not None and not isinstance(names, Mapping):
         raise TypeError(f"names are joints by role, as in {{'left_foot': 'foot_l'}}, not {names!r:.60}")
     thread_total = thread_count(threads)
-    trials = constant_trials(
+    switching = Switching(*_numbers("switched_speed and switch_every", (switched_speed, switch_every)))
+    trials = planned_trials(
+        (scenarios,) if isinstance(scenarios, str) else tuple(scenarios),
         DEFAULT_SPEEDS if speeds is None else _numbers("speeds", speeds),
         DEFAULT_TURN_RATES_DEG if turn_rates_deg is None else _numbers("turn_rates_deg", turn_rates_deg),
         preset or "even",
+        switching,
     )
     tell = progress or _silent
     with _format_warnings() as odd:
@@ -106,57 +119,52 @@ def evaluate(
         name, why = next(iter(database.excluded.items()))
         raise DatasetError(f"{name}: {why}")
     tell("preparing", 1, 1)
-    log = run_trials(
+    simulation = simulated(
         database,
-        [_profile(trial) for trial in trials],
-        tracking=tracking,
+        trials,
+        trackings,
         threads=thread_total,
         progress=lambda done, of: tell("simulating", done, of),
     )
     tell("measuring", 0, 1)
     settings = {
         "preset": preset or "even",
+        "scenarios": list(dict.fromkeys(trial.scenario for trial in trials)),
         "mirror": mirror,
-        "tracking": tracking,
+        "tracking": list(trackings),
         "speeds": sorted({trial.speed for trial in trials}),
         "turn_rates_deg": sorted({trial.turn_rate_deg for trial in trials}),
+        "switched_speed": switching.speed,
+        "switch_every": switching.every,
         "limits": asdict(Limits()),
     }
-    summary = _summary(dataset, database, motions, unit, settings)
-    notes = (*odd, *database.notes)
-    found = _measured(summary, database, trials, log, notes, failed | dict(database.excluded))
+    frames = frames_of(database)
+    tables = measured(dataset, simulation, frames)
+    notes, failed = (*odd, *database.notes), failed | dict(database.excluded)
+    found = Evaluation(
+        dataset=dataset,
+        measured=tables,
+        summary=_summary(dataset, database, motions, unit, settings),
+        verdict=verdict(
+            tables.trials, tables.coverage, tables.clips, tables.usage, notes=notes, failed=failed
+        ),
+        replay=replay_of(simulation, frames, worst_trial(tables.trials)),
+        notes=notes,
+        failed=failed,
+        simulation=simulation,
+    )
     tell("measuring", 1, 1)
     return found
 
 
-def _measured(
-    summary: Summary,
-    database: Database,
-    trials: Sequence[Trial],
-    trial_log: TrialLog,
-    notes: tuple[str, ...],
-    failed: Mapping[str, str],
-) -> Evaluation:
-    dataset, frames = summary.dataset, _frames(database)
-    log = Log.of({name: getattr(trial_log, name) for name in _COLUMNS}, database.rate)
-    transitions = transitions_of(log, frames)
-    counts = play_counts(log, frames)
-    tables = Tables(
-        trials=trials_table(dataset, trials, trial_log.tracking, log, transitions, frames),
-        coverage=coverage_table(dataset, frames),
-        usage=usage_table(dataset, "constant", counts, frames),
-        transitions=transitions_table(dataset, "constant", transitions, frames),
-        clips=clips_table(dataset, counts, frames),
-    )
-    said = verdict(tables.trials, tables.coverage, tables.clips, tables.usage, notes=notes, failed=failed)
-    replay = replay_of(database, trial_log, log, frames, trials, worst_trial(tables.trials))
-    return Evaluation(dataset, tables, summary, said, replay, notes, failed)
-
-
-_COLUMNS = (
-    *("lengths", "recorded_from", "x", "z", "heading", "ref_x", "ref_z", "ref_heading", "ref_speed"),
-    *("ref_turn_rate", "row", "status", "cost_pose", "cost_trajectory", "discontinuity"),
-)
+def _trackings(tracking: Tracking | Sequence[Tracking]) -> tuple[Tracking, ...]:
+    asked: tuple[Tracking, ...] = (tracking,) if isinstance(tracking, str) else tuple(tracking)
+    for each in asked:
+        if each not in ("time", "velocity"):
+            raise ValueError(f"unknown tracking {each!r}; known are time, velocity")
+    if not asked or len(set(asked)) < len(asked):
+        raise ValueError("give each tracking once, and at least one; known are time, velocity")
+    return asked
 
 
 def _numbers(name: str, values: Sequence[float]) -> tuple[float, ...]:
@@ -208,29 +216,6 @@ def _no_motion(folder: str | os.PathLike[str], failed: Mapping[str, GmrError]) -
 def _printable(text: str) -> str:
     """Text with a file's name in it: bytes that are no UTF-8 are written as escapes."""
     return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
-
-
-def _profile(trial: Trial) -> Profile:
-    return Profile(
-        tuple(
-            Segment(segment.seconds, segment.speed, float(np.radians(segment.turn_rate_deg)))
-            for segment in trial.segments
-        ),
-        trial.recorded_from,
-    )
-
-
-def _frames(database: Database) -> Frames:
-    return Frames(
-        clip_names=database.clip_names,
-        mirrored=database.mirrored,
-        clip=database.clips,
-        frame=database.frames,
-        seconds=database.seconds,
-        displacement=database.displacements.astype(np.float64),
-        turn=database.turns.astype(np.float64),
-        rate=database.rate,
-    )
 
 
 def _summary(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Final
 
 import numpy as np
@@ -75,6 +75,11 @@ class Log:
             recorded=(first <= step) & (step < length),
             rate=rate,
         )
+
+    def take(self, trials: NDArray[np.integer[Any]]) -> Log:
+        """The log of some of the trials, by their indices."""
+        columns = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "rate"}
+        return Log(**{name: column[trials] for name, column in columns.items()}, rate=self.rate)
 
     @property
     def moving(self) -> NDArray[np.bool_]:

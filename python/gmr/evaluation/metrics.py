@@ -24,6 +24,7 @@ __all__ = [
     "rms_where",
     "static_error",
     "turn_rate",
+    "worst_share",
 ]
 
 Steps: TypeAlias = NDArray[np.float64]
@@ -91,6 +92,18 @@ def dynamic_error(values: Steps, reference: Steps, where: Mask) -> PerTrial:
     """
     error = values - reference
     return rms_where(error - mean_where(error, where)[:, None], where)
+
+
+def worst_share(values: Steps, reference: Steps, where: Mask) -> PerTrial:
+    """The static error at each reference in force, as a share of it; of several the one farthest from 0.
+
+    Where the speed switches, too fast at the one must not make up for too slow at the other.
+    """
+    worst = np.full(len(values), np.nan)
+    for asked in np.unique(reference[where]).tolist():
+        share = static_error(values, reference, where & (reference == asked)) / asked
+        worst = np.where(np.isnan(worst) | (np.abs(share) > np.abs(worst)), share, worst)
+    return worst
 
 
 def offset(log: Log) -> Steps:

@@ -16,7 +16,7 @@ from gmr.table import Table
 
 __all__ = [
     *("EITHER", "LEFT", "LEFT_ONLY", "RIGHT", "RIGHT_ONLY", "STRAIGHT"),
-    *("Grid", "Limits", "Rectangle", "Region", "failures", "held_rectangle"),
+    *("Grid", "Limits", "Rectangle", "Region", "failures", "held_rectangle", "judged"),
 ]
 
 STRAIGHT: Final = "straight"
@@ -54,7 +54,7 @@ class Grid:
     Attributes:
         speeds: (V,) m/s, ascending.
         turn_rates_deg: (W,) degrees/s, ascending, positive to the left.
-        offset, speed_error, turn_rate_error_deg: (V, W) of the trials.
+        offset, speed_error, speed_error_share, turn_rate_error_deg: (V, W) of the trials.
         held: (V, W) bool, whether the trial holds.
         seconds: (V, W) how long the clips go forward at about this speed and turn rate: nearer to it than
             to the next ones of the grid.
@@ -66,6 +66,7 @@ class Grid:
     turn_rates_deg: NDArray[np.float64]
     offset: NDArray[np.float64]
     speed_error: NDArray[np.float64]
+    speed_error_share: NDArray[np.float64]
     turn_rate_error_deg: NDArray[np.float64]
     held: NDArray[np.bool_]
     seconds: NDArray[np.float64]
@@ -74,8 +75,8 @@ class Grid:
 
     @classmethod
     def of(cls, trials: Table, coverage: Table, limits: Limits) -> Grid:
-        """Lay the constant trials of one dataset out as a grid."""
-        trials = trials.take(trials["scenario"] == "constant")
+        """Lay the trials of one dataset that the verdict judges out as a grid; see :func:`judged`."""
+        trials = trials.take(judged(trials))
         speeds, row = np.unique(trials["speed"], return_inverse=True)
         turn_rates, column = np.unique(trials["turn_rate_deg"], return_inverse=True)
 
@@ -85,14 +86,26 @@ class Grid:
             return cells
 
         offset, speed_error = laid_out("offset_mean"), laid_out("speed_error")
-        turn_rate_error = laid_out("turn_rate_error_deg")
-        held = np.abs(speed_error) <= limits.speed * speeds[:, None]
+        share, turn_rate_error = laid_out("speed_error_share"), laid_out("turn_rate_error_deg")
+        held = np.abs(share) <= limits.speed
         held &= np.abs(turn_rate_error) <= limits.turn_rate_deg
         timed = not np.any(trials["tracking"] == "velocity")
         if timed:
             held &= offset <= limits.offset
         seconds = _seconds_in_cells(coverage, speeds, turn_rates)
-        return cls(speeds, turn_rates, offset, speed_error, turn_rate_error, held, seconds, limits, timed)
+        return cls(
+            speeds, turn_rates, offset, speed_error, share, turn_rate_error, held, seconds, limits, timed
+        )
+
+
+def judged(trials: Table) -> NDArray[np.bool_]:
+    """Which trials the verdict judges: those of constant speed on a timed path, else the first."""
+    kinds = {"scenario": "constant", "tracking": "time"}
+    chosen = np.ones(len(trials), bool)
+    for column, usual in kinds.items():
+        present = trials[column][chosen]
+        chosen &= trials[column] == (usual if np.any(present == usual) else present[0])
+    return chosen
 
 
 def _seconds_in_cells(

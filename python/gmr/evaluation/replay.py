@@ -2,33 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from gmr.evaluation.frames import Frames
-from gmr.evaluation.log import FORCED, JUMPED, Log
+from gmr.evaluation.log import FORCED, JUMPED
 from gmr.evaluation.metrics import offset
+from gmr.evaluation.regions import judged
 from gmr.evaluation.result import Replay
-from gmr.evaluation.scenario import Trial
-from gmr.matching.database import Database
-from gmr.matching.trial import TrialLog, trial_positions
+from gmr.evaluation.simulation import Simulation, log_of
+from gmr.matching.trial import trial_positions
 from gmr.table import Table
 
 __all__ = ["replay_of", "worst_trial"]
 
 
 def worst_trial(trials: Table) -> int:
-    """Index of the trial farthest from its path on the average, else from its speed (no path tracked)."""
-    if np.any(trials["tracking"] == "velocity"):
-        return int(np.argmax(np.abs(trials["speed_error"]) / trials["speed"]))
-    return int(np.argmax(trials["offset_mean"]))
+    """Row of the trial farthest from its path on the average, else from its speed (no path tracked).
+
+    It is one of those that the verdict judges: see :func:`gmr.evaluation.regions.judged`.
+    """
+    rows = np.flatnonzero(judged(trials))
+    column = "offset_mean" if trials["tracking"][rows[0]] == "time" else "speed_error_share"
+    return int(rows[np.argmax(np.abs(trials[column][rows]))])
 
 
-def replay_of(
-    database: Database, trial_log: TrialLog, log: Log, frames: Frames, trials: Sequence[Trial], index: int
-) -> Replay:
-    """The trial number ``index`` from its start to its end, as it was played."""
+def replay_of(simulation: Simulation, frames: Frames, row_of_trial: int) -> Replay:
+    """One trial from its start to its end, as it was played.
+
+    Args:
+        simulation: the trials.
+        frames: of its database.
+        row_of_trial: the trial's row in the evaluation's table of trials.
+    """
+    trial, trial_log, index = simulation[row_of_trial]
+    database, log = simulation.database, log_of(trial_log)
     steps = slice(0, int(trial_log.lengths[index]))
     row = log.row[index, steps]
     return Replay(
@@ -43,7 +50,8 @@ def replay_of(
         jumped=np.isin(log.status[index, steps], (JUMPED, FORCED)),
         clip_names=frames.clip_names,
         rate=frames.rate,
-        speed=trials[index].speed,
-        turn_rate_deg=trials[index].turn_rate_deg,
+        speed=trial.speed,
+        turn_rate_deg=trial.turn_rate_deg,
         tracking=trial_log.tracking,
+        scenario=trial.scenario,
     )

@@ -9,7 +9,7 @@ import contextlib
 import importlib.util
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -21,6 +21,8 @@ from gmr.table import FORMATS, Table
 
 if TYPE_CHECKING:
     import pyarrow
+
+    from gmr.evaluation.simulation import Simulation
 
     AnyTable: TypeAlias = "pyarrow.Table | Table"
 
@@ -92,6 +94,7 @@ class Replay:
         speed: the speed asked for, m/s.
         turn_rate_deg: the turn rate asked for, degrees/s, positive to the left.
         tracking: "time" or "velocity".
+        scenario: "constant" or "switching".
     """
 
     positions: NDArray[np.float32]
@@ -108,6 +111,7 @@ class Replay:
     speed: float
     turn_rate_deg: float
     tracking: str
+    scenario: str = "constant"
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,15 +127,17 @@ class Tables:
             offset_sum along_track_mean along_track_rms cross_track_mean cross_track_rms
             inter_clip_per_second intra_clip_per_second forced_end_per_second
             search_cost_pose_mean search_cost_trajectory_mean clip_count seconds
+            speed_error_share switched_speed switch_every.
+            ``speed_error_share`` is the error at each speed asked for over that speed, of two the larger.
         coverage: one row a one-second window of the clips: dataset clip frame speed turn_rate_deg
             | seconds forward_speed left_speed weight.
             ``frame`` is the middle of the window, ``seconds`` its time in the file, ``weight`` the seconds
             of the dataset that the row stands for (a sum of weights is a duration).
         usage: one row a frame of the dataset, also of those never played (count 0):
-            dataset scenario clip frame count | seconds
+            dataset scenario clip frame count | seconds tracking
         transitions: one row a pair of frames jumped between:
             dataset scenario from_clip from_frame to_clip to_frame kind count
-            | from_seconds to_seconds discontinuity_mean.
+            | from_seconds to_seconds discontinuity_mean tracking.
             ``kind`` is "inter-clip", "intra-clip" or "forced end".
         clips: one row a clip: dataset clip seconds frames mirrored speed_mean turn_rate_mean_deg
             played_seconds played_share used_share.
@@ -159,6 +165,8 @@ class Evaluation:
         replay: the trial that strayed farthest from its path.
         notes: what was noticed or assumed on the way, one sentence each.
         failed: file that could not be used -> why, in one sentence.
+        simulation: the database, what was asked of it and every step of every trial, to be looked at or run
+            again; it is not pickled, and None in what was.
     """
 
     dataset: str
@@ -168,6 +176,12 @@ class Evaluation:
     replay: Replay
     notes: tuple[str, ...] = ()
     failed: Mapping[str, str] = field(default_factory=dict)
+    simulation: Simulation | None = field(default=None, repr=False, compare=False)
+
+    def __reduce__(self) -> tuple[type[Evaluation], tuple[Any, ...]]:
+        """Everything but the simulation, which is large and belongs to this process."""
+        kept = (each.name for each in fields(self) if each.name != "simulation")
+        return Evaluation, tuple(getattr(self, name) for name in kept)
 
     @property
     def trials(self) -> AnyTable:

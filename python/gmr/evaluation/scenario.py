@@ -1,7 +1,8 @@
 """What a character is asked to do in a trial: the planned speeds and turn rates, and which part is recorded.
 
 Source: the paper's section 3.4 and its grid (section 4.2). Every trial first runs straight along the tangent
-of its circle, then turns for a while until it has settled, and only then is recorded.
+of its circle, then turns for a while until it has settled, and only then is recorded. A scenario says what
+is asked for while it is: one speed throughout, or two in turn.
 """
 
 from __future__ import annotations
@@ -9,16 +10,21 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, TypeAlias
 
 __all__ = [
     "DEFAULT_SPEEDS",
     "DEFAULT_TURN_RATES_DEG",
     "PRESETS",
+    "SCENARIOS",
+    "SWITCHED_SPEED",
+    "SWITCH_EVERY",
     "Pacing",
     "Segment",
+    "Switching",
     "Trial",
     "constant_trials",
+    "planned_trials",
 ]
 
 DEFAULT_SPEEDS: Final = tuple(1 + 0.25 * step for step in range(9))
@@ -26,6 +32,17 @@ DEFAULT_SPEEDS: Final = tuple(1 + 0.25 * step for step in range(9))
 
 DEFAULT_TURN_RATES_DEG: Final = tuple(25.0 * step for step in range(-4, 5))
 """The paper's turn rates, degrees per second, positive to the left."""
+
+SWITCHED_SPEED: Final = 4.0
+SWITCH_EVERY: Final = 5.0
+"""The paper's other speed, metres per second, and its seconds from switch to switch (section 4.2)."""
+
+LEAST_STRETCHES: Final = 5
+"""Stretches at one speed in a switching trial, at least: two there and back, and the speed it began with."""
+
+SHORTEST_STRETCH: Final = 0.5
+LONGEST_STRETCH: Final = 60.0
+"""Seconds from one switch to the next."""
 
 SLOWEST: Final = 0.01
 FASTEST: Final = 100.0
@@ -49,11 +66,12 @@ class Trial:
     """One simulated walk.
 
     Attributes:
-        scenario: the kind of trial: "constant", or another that is added beside it.
+        scenario: the kind of trial, one of ``SCENARIOS``.
         speed: the speed that names the trial, m/s.
         turn_rate_deg: the turn rate that names the trial, degrees/s.
         segments: the planned path, from the start; where one segment ends the next begins.
         recorded_from: seconds from the start after which the trial is recorded, to its end.
+        switching: how the speed switches while it is recorded; None where it does not.
     """
 
     scenario: str
@@ -61,11 +79,20 @@ class Trial:
     turn_rate_deg: float
     segments: tuple[Segment, ...]
     recorded_from: float
+    switching: Switching | None = None
 
     @property
     def seconds(self) -> float:
         """Length of the whole trial."""
         return math.fsum(segment.seconds for segment in self.segments)
+
+
+@dataclass(frozen=True, slots=True)
+class Switching:
+    """How the speed switches: to ``speed`` (m/s) and back, each time after ``every`` seconds."""
+
+    speed: float = SWITCHED_SPEED
+    every: float = SWITCH_EVERY
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,49 +125,106 @@ PRESETS: Final[Mapping[str, Callable[[float, float], Pacing]]] = {
 """The pacing of a trial from its speed (m/s) and turn rate (degrees/s), by name."""
 
 
-def constant_trials(
+def planned_trials(
+    scenarios: Sequence[str] = ("constant", "switching"),
     speeds: Sequence[float] = DEFAULT_SPEEDS,
     turn_rates_deg: Sequence[float] = DEFAULT_TURN_RATES_DEG,
     preset: str = "even",
+    switching: Switching | None = None,
 ) -> tuple[Trial, ...]:
-    """The grid of trials that keep one speed and one turn rate (the paper's first scenario).
+    """The grid of trials in every scenario.
 
     Args:
+        scenarios: of ``SCENARIOS``; each gets the whole grid, in this order.
         speeds: metres per second, from 0.01 to 100.
         turn_rates_deg: degrees per second, positive to the left, within 720.
         preset: "even": 3 s of run-up, 2 s to settle, 30 s recorded, whatever the turn rate;
             "mig2022": the durations of the paper's authors.
+        switching: the other speed of the switching scenario; the paper's by default.
 
     Returns:
-        One trial for every pair, turn rates running fastest, both ascending.
+        One trial for every scenario and pair, scenario by scenario, turn rates running fastest, ascending.
 
     Raises:
-        ValueError: no speed or no turn rate, one that is not finite or given twice, a speed that is not from
-            0.01 to 100, too many pairs, or an unknown preset.
+        ValueError: no scenario, speed or turn rate, one that is unknown, not finite or given twice, a speed
+            that is not from 0.01 to 100, switches too close or too far apart, too many pairs, or an unknown
+            preset.
     """
     if preset not in PRESETS:
         raise ValueError(f"unknown preset {preset!r}; known are {', '.join(PRESETS)}")
-    _check("speed", speeds, lambda speed: SLOWEST <= speed <= FASTEST, f"from {SLOWEST:g} to {FASTEST:g} m/s")
+    if unknown := [name for name in scenarios if name not in SCENARIOS]:
+        raise ValueError(f"unknown scenario {unknown[0]!r}; known are {', '.join(SCENARIOS)}")
+    if not scenarios or len(set(scenarios)) < len(scenarios):
+        raise ValueError(f"give each scenario once, and at least one; known are {', '.join(SCENARIOS)}")
+    switches = switching or Switching()
+    for name, values in (("speed", speeds), ("switched speed", [switches.speed])):
+        _check(
+            name, values, lambda speed: SLOWEST <= speed <= FASTEST, f"from {SLOWEST:g} to {FASTEST:g} m/s"
+        )
     _check("turn rate", turn_rates_deg, lambda rate: abs(rate) <= 720, "within 720 degrees/s")
-    if len(speeds) * len(turn_rates_deg) > MOST_TRIALS:
+    _check(
+        "time between switches",
+        [switches.every],
+        lambda seconds: SHORTEST_STRETCH <= seconds <= LONGEST_STRETCH,
+        f"from {SHORTEST_STRETCH:g} to {LONGEST_STRETCH:g} s",
+    )
+    if len(scenarios) * len(speeds) * len(turn_rates_deg) > MOST_TRIALS:
+        each = f" in each of {len(scenarios)} scenarios" if len(scenarios) > 1 else ""
+        fewer = ", or one scenario" if len(scenarios) > 1 else ""
         raise ValueError(
-            f"{len(speeds)} speeds times {len(turn_rates_deg)} turn rates are more than {MOST_TRIALS:,} "
-            "trials; take wider steps"
+            f"{len(speeds)} speeds times {len(turn_rates_deg)} turn rates{each} are more than "
+            f"{MOST_TRIALS:,} trials; take wider steps{fewer}"
         )
     return tuple(
-        _constant_trial(float(speed), float(turn_rate), PRESETS[preset])
+        SCENARIOS[scenario](float(speed), float(turn_rate), PRESETS[preset], switches)
+        for scenario in scenarios
         for speed in sorted(speeds)
         for turn_rate in sorted(turn_rates_deg)
     )
 
 
-def _constant_trial(speed: float, turn_rate_deg: float, pacing: Callable[[float, float], Pacing]) -> Trial:
+def constant_trials(
+    speeds: Sequence[float] = DEFAULT_SPEEDS,
+    turn_rates_deg: Sequence[float] = DEFAULT_TURN_RATES_DEG,
+    preset: str = "even",
+) -> tuple[Trial, ...]:
+    """The grid of trials that keep one speed and one turn rate (the paper's first scenario)."""
+    return planned_trials(("constant",), speeds, turn_rates_deg, preset)
+
+
+Pace: TypeAlias = Callable[[float, float], Pacing]
+
+
+def _constant(speed: float, turn_rate_deg: float, pacing: Pace, switching: Switching) -> Trial:
+    """One speed throughout."""
     pace = pacing(speed, turn_rate_deg)
-    segments = (
-        Segment(pace.run_up, speed, 0.0),
-        Segment(pace.settle + pace.record, speed, turn_rate_deg),
-    )
+    turning = Segment(pace.settle + pace.record, speed, turn_rate_deg)
+    segments = (Segment(pace.run_up, speed, 0.0), turning)
     return Trial("constant", speed, turn_rate_deg, segments, pace.run_up + pace.settle)
+
+
+def _switching(speed: float, turn_rate_deg: float, pacing: Pace, switching: Switching) -> Trial:
+    """The speed of the trial and the switched one in turn; the paper's second scenario (section 3.4).
+
+    A recording that is too short for that, as the authors' of straight lines, is made longer.
+    """
+    pace = pacing(speed, turn_rate_deg)
+    record = max(pace.record, LEAST_STRETCHES * switching.every)
+    begun = [switching.every * number for number in range(math.ceil(record / switching.every - 1e-9))]
+    stretches = [
+        Segment(min(switching.every, record - start), (speed, switching.speed)[number % 2], turn_rate_deg)
+        for number, start in enumerate(begun)
+    ]
+    first = Segment(pace.settle + stretches[0].seconds, speed, turn_rate_deg)
+    segments = (Segment(pace.run_up, speed, 0.0), first, *stretches[1:])
+    return Trial("switching", speed, turn_rate_deg, segments, pace.run_up + pace.settle, switching)
+
+
+SCENARIOS: Final[Mapping[str, Callable[[float, float, Pace, Switching], Trial]]] = {
+    "constant": _constant,
+    "switching": _switching,
+}
+"""A trial from its speed (m/s), its turn rate (degrees/s) and its pacing, by name."""
 
 
 def _check(what: str, values: Sequence[float], allowed: Callable[[float], bool], limit: str) -> None:

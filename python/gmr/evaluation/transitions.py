@@ -70,7 +70,9 @@ def transitions_of(log: Log, frames: Frames) -> Transitions:
     return Transitions(trial, step, from_row, to_row, kind, log.discontinuity[trial, step])
 
 
-def transitions_table(dataset: str, scenario: str, transitions: Transitions, frames: Frames) -> Table:
+def transitions_table(
+    dataset: str, scenario: str, tracking: str, transitions: Transitions, frames: Frames
+) -> Table:
     """One row for every pair of frames and kind: how often, and how far apart the two poses were."""
     keys = np.stack([transitions.from_row, transitions.to_row, transitions.kind], axis=1)
     pairs, which, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
@@ -89,6 +91,7 @@ def transitions_table(dataset: str, scenario: str, transitions: Transitions, fra
             "from_seconds": frames.seconds[from_row],
             "to_seconds": frames.seconds[to_row],
             "discontinuity_mean": apart,
+            "tracking": _repeated(tracking, len(pairs)),
         }
     )
 

@@ -61,8 +61,17 @@ def trials_table(
         | {
             "clip_count": _clips_played(log, frames),
             "seconds": log.moving.sum(axis=1) / log.rate,
+            "speed_error_share": metrics.worst_share(metrics.path_speed(log), log.ref_speed, log.moving),
+            **_switches(trials),
         }
     )
+
+
+def _switches(trials: Sequence[Trial]) -> dict[str, NDArray[np.float64]]:
+    """The other speed, and the seconds from switch to switch; NaN where there is none."""
+    switches = [(trial.switching.speed, trial.switching.every) if trial.switching else () for trial in trials]
+    pairs = np.array([pair or (np.nan, np.nan) for pair in switches], np.float64)
+    return {"switched_speed": pairs[:, 0], "switch_every": pairs[:, 1]}
 
 
 def _accuracy(log: Log) -> dict[str, NDArray[np.float64]]:

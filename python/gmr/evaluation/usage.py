@@ -12,7 +12,7 @@ from gmr.evaluation.frames import Frames
 from gmr.evaluation.log import Log
 from gmr.table import Table
 
-__all__ = ["clips_table", "play_counts", "usage_table"]
+__all__ = ["clips_table", "play_counts", "plays", "usage_table"]
 
 
 def play_counts(log: Log, frames: Frames) -> NDArray[np.int64]:
@@ -20,7 +20,9 @@ def play_counts(log: Log, frames: Frames) -> NDArray[np.int64]:
     return np.bincount(log.row[log.moving], minlength=len(frames))
 
 
-def usage_table(dataset: str, scenario: str, counts: NDArray[np.int64], frames: Frames) -> Table:
+def usage_table(
+    dataset: str, scenario: str, tracking: str, counts: NDArray[np.int64], frames: Frames
+) -> Table:
     """One row a frame of the dataset, in the order of the clips; ``count`` is 0 where it was never played."""
     return Table(
         {
@@ -30,8 +32,26 @@ def usage_table(dataset: str, scenario: str, counts: NDArray[np.int64], frames: 
             "frame": frames.frame,
             "count": counts,
             "seconds": frames.seconds,
+            "tracking": np.full(len(frames), tracking, object),
         }
     )
+
+
+def plays(usage: Table) -> Table:
+    """How often each frame was played in all scenarios and trackings of a usage table.
+
+    Returns:
+        One row a frame, in the order of the clips: ``clip``, ``frame``, ``count``, ``seconds``.
+    """
+    number = {name: place for place, name in enumerate(dict.fromkeys(usage["clip"].tolist()))}
+    clip = np.fromiter((number[name] for name in usage["clip"].tolist()), np.int64, len(usage))
+    frame = usage["frame"].astype(np.int64)
+    _, first, which = np.unique(
+        clip * (frame.max(initial=0) + 1) + frame, return_index=True, return_inverse=True
+    )
+    total = np.bincount(which.ravel(), usage["count"], len(first)).astype(np.int64)
+    rows = usage.take(first)
+    return Table({"clip": rows["clip"], "frame": rows["frame"], "count": total, "seconds": rows["seconds"]})
 
 
 def clips_table(dataset: str, counts: NDArray[np.int64], frames: Frames) -> Table:

@@ -16,6 +16,7 @@ from gmr.evaluation.clip_sentences import clip_sentences
 from gmr.evaluation.failure_sentences import capture_sentences, failure_sentences
 from gmr.evaluation.regions import Grid, Limits, failures, held_rectangle
 from gmr.evaluation.result import Verdict
+from gmr.evaluation.scenario_sentences import scenario_sentences
 from gmr.evaluation.words import count, duration, listing, percent, some_of, span, turning
 from gmr.table import Table
 
@@ -57,6 +58,7 @@ def verdict(
             _what_counts(grid),
             *_straight_sentences(grid),
             *failure_sentences(grid, regions),
+            *scenario_sentences(trials, coverage, grid.limits),
             *_side_sentences(coverage, mirrored),
             *clip_sentences(clips, usage),
             *capture_sentences(grid, regions, mirrored),

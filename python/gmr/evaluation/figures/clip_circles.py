@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from gmr.evaluation.figures.clip_usage import recordings
 from gmr.evaluation.figures.wording import base_name
 from gmr.evaluation.result import Evaluation
+from gmr.evaluation.usage import plays
 from gmr.evaluation.words import count, percent
 from gmr.pages.figure import Figure
 from gmr.table import Table
@@ -31,7 +32,7 @@ def clip_circles(evaluation: Evaluation) -> Figure:
     """The clips played most as circles of dots, sized by plays, and the strongest jumps between the dots."""
     names = recordings(evaluation.measured.clips)["clip"][:_MOST_CLIPS].tolist()
     number = {name: place for place, name in enumerate(names)}
-    usage, transitions = evaluation.measured.usage, evaluation.measured.transitions
+    usage, transitions = plays(evaluation.measured.usage), evaluation.measured.transitions
     length = _lengths(usage, number)
     dots = _dots(usage, names, number, length)
     lines, joined = _lines(transitions, number, length)

@@ -10,6 +10,7 @@ from gmr.evaluation.figures.classes import Classes
 from gmr.evaluation.figures.clip_usage import MOST_BARS, recordings
 from gmr.evaluation.figures.wording import base_name, short_names
 from gmr.evaluation.result import Evaluation
+from gmr.evaluation.usage import plays
 from gmr.evaluation.words import count, percent
 from gmr.pages.figure import Figure
 from gmr.pages.theme import NAMES_AXIS, NAMES_CONFIG, ROW
@@ -25,11 +26,12 @@ def frame_usage(evaluation: Evaluation) -> Figure:
     """Plays per frame in each fortieth of the clips played most; a copy counts for its recording."""
     clips = recordings(evaluation.measured.clips)
     names = clips["clip"][: min(len(clips), MOST_BARS)]
-    pieces = _pieces(evaluation.measured.usage, names.tolist())
+    usage = plays(evaluation.measured.usage)
+    pieces = _pieces(usage, names.tolist())
     return Figure(
         name="frame_usage",
         title="Plays per frame along each clip",
-        sentence=_sentence(evaluation.measured.usage),
+        sentence=_sentence(usage),
         chart=_chart(short_names(names.tolist())),
         data={"pieces": pieces},
     )

@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.figures.trial_maps import HOVER, cells_of_trials, trials_of
+from gmr.evaluation.figures.trial_maps import HOVER, cells_of_trials, set_suffix, set_words, trials_of
 from gmr.evaluation.regions import Grid, Limits
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.words import count, listing, percent
@@ -36,8 +36,8 @@ def holds_map(evaluation: Evaluation, scenario: str, tracking: str, *, columns: 
         }
     )
     return Figure(
-        name="trial_map_holds" + ("" if tracking == "time" else f"_{tracking}"),
-        title="Where it does what it is asked",
+        name=f"trial_map_holds{set_suffix(scenario, tracking)}",
+        title="Where it does what it is asked" + set_words(scenario, tracking),
         sentence=_sentence(outcome, grid.limits, timed=tracking == "time"),
         chart=_chart(len(grid.speeds), columns),
         data={"trials": drawn},
@@ -50,7 +50,7 @@ def _outcomes(grid: Grid, *, timed: bool) -> NDArray[np.int64]:
     excess = np.stack(
         [
             grid.offset / limits.offset if timed else np.zeros_like(grid.offset),
-            np.abs(grid.speed_error) / (limits.speed * grid.speeds[:, None]),
+            np.abs(grid.speed_error_share) / limits.speed,
             np.abs(grid.turn_rate_error_deg) / limits.turn_rate_deg,
         ]
     )

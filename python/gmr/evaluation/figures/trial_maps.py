@@ -12,7 +12,16 @@ from gmr.evaluation.result import Evaluation
 from gmr.pages.figure import Figure
 from gmr.table import Table
 
-__all__ = ["HOVER", "cells_of_trials", "place_of_trial", "trial_map", "trial_sets", "trials_of"]
+__all__ = [
+    "HOVER",
+    "cells_of_trials",
+    "place_of_trial",
+    "set_suffix",
+    "set_words",
+    "trial_map",
+    "trial_sets",
+    "trials_of",
+]
 
 
 def trial_map(evaluation: Evaluation, measure: Measure, scenario: str, tracking: str) -> Figure:
@@ -29,8 +38,8 @@ def trial_map(evaluation: Evaluation, measure: Measure, scenario: str, tracking:
         }
     )
     return Figure(
-        name=f"trial_map_{measure.column}" + ("" if tracking == "time" else f"_{tracking}"),
-        title=measure.title,
+        name=f"trial_map_{measure.column}{set_suffix(scenario, tracking)}",
+        title=measure.title + set_words(scenario, tracking),
         sentence=measure.sentence(chosen),
         chart=_chart(measure, len(np.unique(chosen["speed"]))),
         data={"trials": drawn},
@@ -47,6 +56,18 @@ def trials_of(evaluation: Evaluation, scenario: str, tracking: str) -> Table:
     """The trials of one scenario and one tracking."""
     trials = evaluation.measured.trials
     return trials.take((trials["scenario"] == scenario) & (trials["tracking"] == tracking))
+
+
+def set_suffix(scenario: str, tracking: str) -> str:
+    """What the names of the figures of a set of trials end in: nothing for the usual set."""
+    unusual = ("" if scenario == "constant" else scenario, "" if tracking == "time" else tracking)
+    return "".join(f"_{name}" for name in unusual if name)
+
+
+def set_words(scenario: str, tracking: str) -> str:
+    """What the titles of the figures of a set of trials end in: nothing for the usual set."""
+    unusual = {"switching": "while the speed switches", "velocity": "without a timed path"}
+    return "".join(f", {unusual[name]}" for name in (scenario, tracking) if name in unusual)
 
 
 HOVER: Final = {

@@ -1,0 +1,78 @@
+"""All tables of a simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from gmr.evaluation.coverage import coverage_table
+from gmr.evaluation.frames import Frames
+from gmr.evaluation.log import Log
+from gmr.evaluation.result import Tables
+from gmr.evaluation.scenario import Trial
+from gmr.evaluation.simulation import Simulation, log_of
+from gmr.evaluation.transitions import Transitions, transitions_of, transitions_table
+from gmr.evaluation.trials import trials_table
+from gmr.evaluation.usage import clips_table, play_counts, usage_table
+from gmr.table import Table
+
+__all__ = ["measured"]
+
+
+def measured(dataset: str, simulation: Simulation, frames: Frames) -> Tables:
+    """Measure every trial, scenario by scenario.
+
+    Args:
+        dataset: its name.
+        simulation: the trials.
+        frames: of the simulation's database.
+    """
+    sets = list(_sets(simulation, frames))
+    counts = [play_counts(part.log, frames) for part in sets]
+    return Tables(
+        trials=Table.joined(
+            [
+                trials_table(dataset, part.trials, part.tracking, part.log, part.transitions, frames)
+                for part in sets
+            ]
+        ),
+        coverage=coverage_table(dataset, frames),
+        usage=Table.joined(
+            [
+                usage_table(dataset, part.scenario, part.tracking, played, frames)
+                for part, played in zip(sets, counts, strict=True)
+            ]
+        ),
+        transitions=Table.joined(
+            [
+                transitions_table(dataset, part.scenario, part.tracking, part.transitions, frames)
+                for part in sets
+            ]
+        ),
+        clips=clips_table(dataset, np.sum(counts, axis=0), frames),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Set:
+    """The trials of one tracking and one scenario."""
+
+    tracking: str
+    scenario: str
+    trials: tuple[Trial, ...]
+    log: Log
+    transitions: Transitions
+
+
+def _sets(simulation: Simulation, frames: Frames) -> Iterator[_Set]:
+    """In the order of the rows of the table of trials."""
+    scenario = np.array([trial.scenario for trial in simulation.trials])
+    for tracking, trial_log in simulation.logs.items():
+        log = log_of(trial_log)
+        for name in dict.fromkeys(scenario.tolist()):
+            chosen = np.flatnonzero(scenario == name)
+            part = log.take(chosen)
+            trials = tuple(simulation.trials[place] for place in chosen.tolist())
+            yield _Set(tracking, name, trials, part, transitions_of(part, frames))
