@@ -238,15 +238,25 @@ def test_figures_side_by_side_do_not_meet(figure: Figure, walk: gmr.Motion) -> N
     assert all((place == 0).all() for place in laid_out(figures, overlay=True).places)
 
 
-def test_everything_is_in_sight(figure: Figure) -> None:
-    layout = laid_out([figure, figure])
+@pytest.mark.parametrize("count", [1, 2, 7])
+def test_everything_is_in_sight_and_fills_it(figure: Figure, walk: gmr.Motion, count: int) -> None:
+    layout = laid_out([figure, *[motion_figure(walk)] * (count - 1)])
     back = layout.eye - layout.centre
-    distance = np.linalg.norm(back)
-    corners = np.stack(np.meshgrid(*zip(layout.low, layout.high, strict=True)), -1).reshape(-1, 3)
-    ahead = (layout.eye - corners) @ (back / distance)
-    aside = np.linalg.norm(corners - layout.eye + ahead[:, None] * back / distance, axis=1)
+    back /= np.linalg.norm(back)
+    right = np.cross([0, 1, 0], back)
+    right /= np.linalg.norm(right)
+    corners = np.array(
+        [np.where(which, high, low) for low, high in layout.boxes for which in np.ndindex(2, 2, 2)]
+    )
+    away = corners - layout.eye
+    ahead = -away @ back
+    aside = np.abs(away @ right) / (1.3 * ahead)
+    above = np.abs(away @ np.cross(back, right)) / ahead
+    filled = np.tan(layout.field / 2)
     assert (ahead > 0).all()
-    assert (aside / ahead < np.tan(layout.field / 2) * np.hypot(1, 1.3)).all()
+    assert (np.maximum(aside, above) < filled).all()
+    # What lies above the figures is kept for their names.
+    assert max(aside.max(), above.max()) > 0.85 * filled
 
 
 @pytest.mark.parametrize("seed", range(6))
