@@ -167,6 +167,13 @@ class Database:
     rate: float
     translated: list[int]
     index: Index
+    def subset(self, left: NDArray[np.bool_]) -> Database:
+        """The same rows, of which only those of (N,) ``left`` may be shown; shares the poses.
+
+        Raises:
+            ValueError: another number of rows, or none that may be jumped to is left.
+        """
+
     def offsets(self, row: int) -> NDArray[np.float32]:
         """(J, 3) of the skeleton of the clip that the row belongs to, metres."""
 

@@ -264,6 +264,11 @@ impl PyDatabase {
         PyIndex(Arc::clone(self.0.index()))
     }
 
+    fn subset(&self, py: Python<'_>, left: PyReadonlyArray1<'_, bool>) -> PyResult<Self> {
+        let left = contiguous("left", left.as_slice())?;
+        py.detach(|| self.0.subset(left)).map(|database| Self(Arc::new(database))).map_err(refused)
+    }
+
     fn offsets<'py>(&self, py: Python<'py>, row: u32) -> PyResult<Bound<'py, PyArray2<f32>>> {
         if row as usize >= self.0.row_count() {
             return Err(refused(format!("there is no row {row}; the database has {}", self.0.row_count())));

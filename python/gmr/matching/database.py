@@ -7,7 +7,7 @@ Next-Gen Animation" (2016).
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -201,6 +201,30 @@ class Database:
         """The rows of a clip, by its index or name."""
         index = self.clip_names.index(clip) if isinstance(clip, str) else clip
         return slice(*self.core.clip_ranges[index])
+
+    def subset(self, left: ArrayLike) -> Database:
+        """The same database, of which only some rows may be shown; nothing is read or measured again.
+
+        A row that is gone is neither jumped to nor played on to: where one follows, the clip ends. Nor is a
+        row jumped to whose features look at one that is gone. All rows keep their numbers, their features and
+        the scale of these, so that trials on whole clips have the bits of those on a database built of these
+        clips with the same :attr:`normalization`.
+
+        Args:
+            left: (N,) whether a row may be shown, of those that may be so far.
+
+        Raises:
+            DatasetError: no row that may be jumped to is left.
+            ValueError: ``left`` has not N entries.
+        """
+        mask = np.ascontiguousarray(left, bool)
+        if mask.shape != (len(self),):
+            raise ValueError(f"{mask.shape} rows left; give one entry for each of the {len(self)}")
+        try:
+            core = self.core.subset(mask)
+        except ValueError as error:
+            raise DatasetError(str(error)) from error
+        return replace(self, core=core)
 
     def normalize(self, raw: ArrayLike) -> NDArray[np.float32]:
         """Queries (Q, D) from raw numbers (Q, D) in metres and metres a second, in the schema's order."""

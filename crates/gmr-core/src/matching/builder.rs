@@ -226,7 +226,8 @@ impl DatabaseBuilder {
             normalization,
             constant_groups,
             index: Arc::new(index),
-            rows: self.rows,
+            rows: Arc::new(self.rows),
+            left: None,
         })
     }
 

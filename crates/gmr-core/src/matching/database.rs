@@ -7,6 +7,7 @@
 use crate::matching::features::Schema;
 use crate::matching::index::Index;
 use crate::matching::normalization::Normalization;
+use crate::matching::subset::Left;
 use crate::skeleton::Topology;
 use std::ops::Range;
 use std::sync::Arc;
@@ -40,7 +41,9 @@ pub struct Database {
     pub(super) normalization: Normalization,
     pub(super) constant_groups: Vec<usize>,
     pub(super) index: Arc<Index>,
-    pub(super) rows: Rows,
+    pub(super) rows: Arc<Rows>,
+    /// `None`: all rows.
+    pub(super) left: Option<Arc<Left>>,
 }
 
 /// Everything that is kept per row, N rows.
@@ -135,16 +138,22 @@ impl Database {
         self.rows.clips[self.rows.clip_of[row as usize] as usize].rows.clone()
     }
 
-    /// The row played after `row`: the next of its clip, `None` at the clip's end.
+    /// The row played after `row`: the next of its clip, `None` at the clip's end and where the next one is gone.
     #[must_use]
     pub fn next_row(&self, row: u32) -> Option<u32> {
-        (row + 1 < self.clip_rows(row).end).then_some(row + 1)
+        (row + 1 < self.clip_rows(row).end && self.has_row(row + 1)).then_some(row + 1)
+    }
+
+    /// Whether a row may be shown: all may, but in a [`Database::subset`].
+    #[must_use]
+    pub fn has_row(&self, row: u32) -> bool {
+        self.left.as_ref().is_none_or(|left| left.rows[row as usize])
     }
 
     /// Which rows may be jumped to (N): those whose clip holds all that their features look at.
     #[must_use]
     pub fn candidates(&self) -> &[bool] {
-        &self.rows.candidates
+        self.left.as_ref().map_or(&self.rows.candidates, |left| &left.candidates)
     }
 
     /// Tag bits of each row (N).

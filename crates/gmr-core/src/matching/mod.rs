@@ -15,4 +15,5 @@ mod pose;
 pub mod request;
 pub mod root;
 pub mod start;
+mod subset;
 pub mod trial;

@@ -82,6 +82,15 @@ pub fn database_with_a_past(clips: &[Walk]) -> Database {
     database_with(RATE, Skeleton::Plain, Schema::new(groups, 4).unwrap(), clips)
 }
 
+/// As [`database`], scaled as another one is.
+pub fn database_scaled_as(other: &Database, clips: &[Walk]) -> Database {
+    let plain = Skeleton::Plain;
+    let schema = Schema::locomotion(1, 2, 0, 4).unwrap();
+    let mut builder = DatabaseBuilder::new(plain.topology(), plain.translated(), schema, RATE).unwrap();
+    clips.iter().for_each(|clip| clip.add_to(&mut builder, RATE, plain));
+    builder.finish(Some(other.normalization().clone())).unwrap()
+}
+
 fn database_with(rate: f64, skeleton: Skeleton, schema: Schema, clips: &[Walk]) -> Database {
     let (topology, translated) = (skeleton.topology(), skeleton.translated());
     let mut builder = DatabaseBuilder::new(topology, translated, schema, rate).unwrap();
