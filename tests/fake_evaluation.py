@@ -9,7 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.evaluation.frames import Frames
+from gmr.evaluation.replays import PlayedTrial, Replays
 from gmr.evaluation.result import Evaluation, Replay, Summary, Tables, Verdict
+from gmr.evaluation.scenario import Segment, Trial
 from gmr.evaluation.transitions import KINDS
 from gmr.table import Table
 
@@ -76,6 +79,14 @@ def with_names(evaluation: Evaluation, rename: dict[str, str]) -> Evaluation:
             evaluation.replay,
             clip_names=tuple(rename.get(clip, clip) for clip in evaluation.replay.clip_names),
         ),
+        replays=evaluation.replays
+        and replace(
+            evaluation.replays,
+            frames=replace(
+                evaluation.replays.frames,
+                clip_names=tuple(rename.get(clip, clip) for clip in evaluation.replays.frames.clip_names),
+            ),
+        ),
     )
 
 
@@ -141,6 +152,7 @@ def _assembled(
     )
     trials = _trials(trackings, scenarios, random)
     replay = _replay(names, replay_seconds, random)
+    replays = _replays(names, trials, frames, replay, random)
     return Evaluation(
         dataset="fake",
         measured=Tables(trials, windows, usage, _transitions(names, popularity, frames, random), clips),
@@ -171,6 +183,7 @@ def _assembled(
             ),
         ),
         replay=replay,
+        replays=replays,
     )
 
 
@@ -244,6 +257,61 @@ def _transitions(
             "tracking": np.full(n, "time", object),
         }
     )
+
+
+def _replays(
+    names: list[str], trials: Table, frames: int, replay: Replay, random: np.random.Generator
+) -> Replays:
+    """All trials: pieces of the clips, in each of which the body of the replay moves, one after the other."""
+    seconds = len(replay.path) / RATE
+    length, count = max(min(frames, len(replay.path)), 2), len(names)
+    local = replay.positions[:length].copy()
+    for axis, along in ((0, 0), (2, 1)):
+        local[..., axis] -= replay.path[:length, None, along]
+    rows = count * length
+    dataset = Frames(
+        clip_names=tuple(names),
+        mirrored=np.zeros(count, bool),
+        clip=np.repeat(np.arange(count), length).astype(np.int32),
+        frame=np.tile(np.arange(length), count).astype(np.int32),
+        seconds=np.tile(np.arange(length) / RATE, count),
+        displacement=np.column_stack([np.zeros(rows), np.full(rows, 2.0 / RATE)]),
+        turn=np.full(rows, 0.4 / RATE),
+        rate=RATE,
+    )
+    played = []
+    for row in trials.rows():
+        steps = max(int(seconds * RATE), 2)
+        shown = np.empty(0, np.int64)
+        while len(shown) < steps:
+            first = int(random.integers(0, length - 1))
+            last = int(random.integers(first + 1, length))
+            shown = np.append(shown, int(random.integers(0, min(count, 9))) * length + np.arange(first, last))
+        shown = shown[:steps]
+        time = np.arange(steps) / RATE
+        turn = np.radians(row["turn_rate_deg"])
+        way = row["speed"] * time * np.sinc(turn * time / 2 / np.pi)
+        heading = 0.4 * time
+        played.append(
+            PlayedTrial(
+                Trial(
+                    row["scenario"],
+                    row["speed"],
+                    row["turn_rate_deg"],
+                    (Segment(seconds, row["speed"], row["turn_rate_deg"]),),
+                    0.0,
+                ),
+                row["tracking"],
+                shown,
+                np.append(False, np.diff(shown) != 1),
+                np.cumsum(np.sin(heading)) * 2.0 / RATE,
+                np.cumsum(np.cos(heading)) * 2.0 / RATE,
+                heading,
+                way * np.sin(turn * time / 2),
+                way * np.cos(turn * time / 2),
+            )
+        )
+    return Replays(tuple(played), dataset, np.tile(local, (count, 1, 1)), replay.parents, replay.joint_names)
 
 
 # name, parent, rest position (x, y, z) in metres, phase and reach of its swing

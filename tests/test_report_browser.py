@@ -19,6 +19,12 @@ pytestmark = pytest.mark.browser
 
 DESKTOP: ViewportSize = {"width": 1280, "height": 900}
 PHONE: ViewportSize = {"width": 390, "height": 844}
+RING_IS_ON_CELL = """(number) => {
+    const map = document.querySelector("#trial_map_holds .map");
+    const ring = map.querySelector(".cell-ring").getBoundingClientRect();
+    const cell = map.querySelectorAll(".mark-rect path")[number].getBoundingClientRect();
+    return Math.hypot(ring.x - cell.x, ring.y - cell.y) < 3 && Math.abs(ring.width - cell.width) < 3;
+}"""
 NASTY = "<script>document.title='owned'</script><img src=x onerror=\"document.title='owned'\">.bvh"
 
 
@@ -68,6 +74,7 @@ def open_page(browser: Browser, path: Path, **settings: object) -> Opened:
     page.on("request", lambda request: watch(request.url))
     page.goto(path.as_uri())
     page.locator("html[data-drawn]").wait_for()
+    page.locator(".player[data-ready=yes]").wait_for()
     return opened
 
 
@@ -281,6 +288,64 @@ def test_the_camera_turns_zooms_and_lets_go(opened: Opened) -> None:
     page.keyboard.press(" ")
 
 
+def test_a_click_on_a_cell_replays_its_trial(opened: Opened) -> None:
+    page = opened.page
+    page.locator("#set-select").select_option("0")
+    page.locator("input[value=holds]").check()
+    cells = page.locator("#trial_map_holds .mark-rect path")
+    for number in (3, 40):
+        cell = cells.nth(number)
+        cell.scroll_into_view_if_needed()
+        box = cell.bounding_box()
+        assert box is not None
+        page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        page.locator(f".player[data-trial='{number}']").wait_for()
+        assert opened.part("play").inner_text() == "Pause"
+        assert opened.part("trial").input_value() == str(number)
+        assert "Asked for " in opened.part("sentence").inner_text()
+        opened.part("play").click()
+        opened.part("back").click()
+        page.wait_for_function(RING_IS_ON_CELL, arg=number)
+
+
+def test_arrow_keys_and_enter_on_a_map_replay_a_trial(opened: Opened) -> None:
+    page = opened.page
+    page.locator("#set-select").select_option("0")
+    page.locator("input[value=offset_mean]").check()
+    held = page.locator("figure#trial_map_offset_mean .map")
+    held.locator(".chart[data-drawn]").wait_for()
+    held.focus()
+    cursor = held.locator(".cell-ring.cursor")
+    cursor.wait_for()
+    for _ in range(10):
+        page.keyboard.press("ArrowDown")
+        page.keyboard.press("ArrowLeft")
+    page.keyboard.press("ArrowRight")
+    held.locator("[role=status]", has_text="1 m/s turning right by 75 degrees/s: ").wait_for(state="attached")
+    page.keyboard.press("Enter")
+    page.locator(".player[data-trial='1']").wait_for()
+    assert page.evaluate("document.activeElement.dataset.part") == "stage"
+    page.keyboard.press(" ")
+    opened.part("back").focus()
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.className") == "map"
+    assert cursor.is_visible()
+
+
+def test_every_trial_can_be_chosen_from_the_list_and_the_worst_again(opened: Opened) -> None:
+    options = opened.part("trial").locator("option")
+    assert options.count() == 2 * 81
+    sentences = set()
+    for number in (0, 80, 161):
+        opened.part("trial").select_option(str(number))
+        opened.page.locator(f".player[data-trial='{number}']").wait_for()
+        sentences.add(opened.part("sentence").inner_text())
+    opened.part("farthest").click()
+    sentences.add(opened.part("sentence").inner_text())
+    assert len(sentences) >= 3
+    assert not opened.part("dataset").is_visible()
+
+
 def test_links_lead_to_their_sections(opened: Opened) -> None:
     links = opened.page.locator("nav a").all()
     assert len(links) == 7
@@ -297,6 +362,7 @@ def test_every_control_can_be_reached_by_keyboard(opened: Opened) -> None:
         page.keyboard.press("Tab")
         reached.update(page.evaluate(named).split())
     player = {"stage", "scrubber", "play", "start", "worst", "pace", "follow", "nearer", "farther", "reset"}
+    player |= {"trial", "farthest"}
     assert player | {"clip-select", "set-select", "measure"} <= reached
 
 

@@ -17,6 +17,7 @@ from gmr.errors import DatasetError, FormatWarning
 from gmr.evaluation.measured import measured
 from gmr.evaluation.regions import Limits
 from gmr.evaluation.replay import replay_of, worst_trial
+from gmr.evaluation.replays import replays_of
 from gmr.evaluation.result import Evaluation, Summary
 from gmr.evaluation.scenario import (
     DEFAULT_SPEEDS,
@@ -152,6 +153,7 @@ def evaluate(
         notes=notes,
         failed=failed,
         simulation=simulation,
+        replays=replays_of(simulation, frames),
     )
     tell("measuring", 1, 1)
     return found

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.evaluation.replays import Replays
 from gmr.replacing import replacing
 from gmr.table import FORMATS, Table
 
@@ -167,6 +168,7 @@ class Evaluation:
         failed: file that could not be used -> why, in one sentence.
         simulation: the database, what was asked of it and every step of every trial, to be looked at or run
             again; it is not pickled, and None in what was.
+        replays: all trials as they were played, to be drawn; likewise.
     """
 
     dataset: str
@@ -177,10 +179,12 @@ class Evaluation:
     notes: tuple[str, ...] = ()
     failed: Mapping[str, str] = field(default_factory=dict)
     simulation: Simulation | None = field(default=None, repr=False, compare=False)
+    replays: Replays | None = field(default=None, repr=False, compare=False)
 
     def __reduce__(self) -> tuple[type[Evaluation], tuple[Any, ...]]:
-        """Everything but the simulation, which is large and belongs to this process."""
-        kept = (each.name for each in fields(self) if each.name != "simulation")
+        """Everything but what was simulated, which is large and belongs to this process."""
+        left_out = ("simulation", "replays")
+        kept = (each.name for each in fields(self) if each.name not in left_out)
         return Evaluation, tuple(getattr(self, name) for name in kept)
 
     @property

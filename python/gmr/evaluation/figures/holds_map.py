@@ -30,7 +30,7 @@ def holds_map(evaluation: Evaluation, scenario: str, tracking: str, *, columns: 
     outcome = _outcomes(grid, timed=tracking == "time")[row, column]
     drawn = Table(
         {
-            **{name: trials[name] for name in ("speed", "turn_rate_deg", *HOVER)},
+            **{name: trials[name] for name in ("trial", "speed", "turn_rate_deg", *HOVER)},
             "outcome": np.array(_OUTCOMES, object)[outcome],
             "mark": np.array(_MARKS, object)[outcome],
         }

@@ -16,6 +16,7 @@ __all__ = [
     "HOVER",
     "cells_of_trials",
     "place_of_trial",
+    "set_label",
     "set_suffix",
     "set_words",
     "trial_map",
@@ -31,7 +32,7 @@ def trial_map(evaluation: Evaluation, measure: Measure, scenario: str, tracking:
     spread = measure.spread(chosen) if measure.spread else np.full(len(chosen), np.nan)
     drawn = Table(
         {
-            **{name: chosen[name] for name in ("speed", "turn_rate_deg", *HOVER)},
+            **{name: chosen[name] for name in ("trial", "speed", "turn_rate_deg", *HOVER)},
             "value": value,
             "spread": spread * measure.factor,
             "class": measure.classes.of(value),
@@ -52,10 +53,18 @@ def trial_sets(evaluation: Evaluation) -> list[tuple[str, str]]:
     return list(dict.fromkeys(zip(trials["scenario"].tolist(), trials["tracking"].tolist(), strict=True)))
 
 
+def set_label(scenario: str, tracking: str) -> str:
+    """What a list of sets of trials calls one of them."""
+    pace = {"constant": "one speed throughout", "switching": "two speeds in turn"}
+    aim = {"time": "aims at the timed plan", "velocity": "asks for speed and turn rate only"}
+    return f"{pace.get(scenario, scenario)}, {aim.get(tracking, tracking)}"
+
+
 def trials_of(evaluation: Evaluation, scenario: str, tracking: str) -> Table:
-    """The trials of one scenario and one tracking."""
+    """The trials of one scenario and one tracking, with ``trial``: their rows in the table of all."""
     trials = evaluation.measured.trials
-    return trials.take((trials["scenario"] == scenario) & (trials["tracking"] == tracking))
+    rows = np.flatnonzero((trials["scenario"] == scenario) & (trials["tracking"] == tracking))
+    return Table({**dict(trials.take(rows)), "trial": rows})
 
 
 def set_suffix(scenario: str, tracking: str) -> str:

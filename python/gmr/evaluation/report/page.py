@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 from gmr.evaluation.figures import figures
 from gmr.evaluation.figures.clip_usage import recordings
 from gmr.evaluation.figures.transition_matrix import flows
-from gmr.evaluation.report.replay import packed_replay
+from gmr.evaluation.replay import worst_trial
+from gmr.evaluation.replays import Replays
+from gmr.evaluation.report.film import packed_film
 from gmr.evaluation.report.sections import clip_groups, facts, sections
 from gmr.evaluation.result import Evaluation
 from gmr.pages.document import own
@@ -15,7 +17,7 @@ from gmr.pages.page import Page
 
 __all__ = ["page"]
 
-_SCRIPTS: Final = ("scatter.js", "tables.js", "camera.js", "drawing.js", "player.js")
+_SCRIPTS: Final = ("scatter.js", "tables.js", "camera.js", "drawing.js", "film.js", "player.js", "maps.js")
 
 
 def page(evaluation: Evaluation) -> str:
@@ -37,8 +39,13 @@ def page(evaluation: Evaluation) -> str:
         data={
             "clips": clips,
             "clipGroups": list(groups.values()),
-            "replay": packed_replay(evaluation.replay, evaluation.summary.joints.get("hips")),
+            "films": [] if evaluation.replays is None else [_film(evaluation, evaluation.replays)],
         },
         scripts=[own(__package__, name) for name in _SCRIPTS],
         without_scripts="the charts and the moving skeleton need JavaScript, which is off in this browser",
     ).html()
+
+
+def _film(evaluation: Evaluation, replays: Replays) -> dict[str, Any]:
+    hips = evaluation.summary.joints.get("hips")
+    return packed_film(replays, evaluation.dataset, hips, worst_trial(evaluation.measured.trials))

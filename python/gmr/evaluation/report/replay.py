@@ -1,21 +1,18 @@
-"""The worst trial as the page's player needs it: poses about the character's place, quantised to 16 bits."""
+"""What the player draws of a body, and what is said of a trial in words."""
 
 from __future__ import annotations
 
 import re
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.figures.wording import asked, metres, short_names
-from gmr.evaluation.result import Replay
-from gmr.pages.columns import packed_array
+from gmr.evaluation.figures.wording import asked, metres
+from gmr.evaluation.replays import PlayedTrial, Replays
 
-__all__ = ["packed_replay", "replay_sentence", "sides"]
+__all__ = ["drawn_parents", "head_of", "on_a_bone", "replay_sentence", "sides"]
 
-_MOST_BYTES: Final = 450_000
-"""Of poses; a replay that takes more keeps every second, third ... step, and the player fills in between."""
 _LEFT: Final = re.compile(
     r"left|(^|[\W_])l([\W_]|$)|^l(?=[A-Z]|hip|fem|tib|foot|toe|hand|wri|rad|hum|cla|thu|fin)"
 )
@@ -24,53 +21,16 @@ _RIGHT: Final = re.compile(
 )
 
 
-def packed_replay(replay: Replay, hips: str | None = None) -> dict[str, Any]:
-    """The replay for the page's JSON.
-
-    Positions are int16, in units of ``unit`` metres, and horizontally relative to the path: 0.1 mm or better
-    wherever on the ground the trial goes.
-
-    Args:
-        replay: the trial.
-        hips: name of the joint that the body hangs on. What is above it, a root that may stand anywhere, is
-            not drawn.
-    """
-    steps, joints, _ = replay.positions.shape
-    stride = max(1, -(-steps * joints * 6 // _MOST_BYTES))
-    parents = _drawn_parents(replay, hips)
-    about = replay.positions[::stride].astype(np.float64)
-    about[..., 0] -= replay.path[::stride, None, 0]
-    about[..., 2] -= replay.path[::stride, None, 1]
-    about[:, ~_on_a_bone(parents)] = 0.0
-    used, clip = np.unique(replay.clip, return_inverse=True)
-    unit = float(np.abs(about).max(initial=1e-3)) / 32767
-    return {
-        "rate": replay.rate / stride,
-        "steps": len(about),
-        "joints": joints,
-        "unit": unit,
-        "positions": packed_array(np.rint(about / unit).astype(np.int16)),
-        "parents": parents.tolist(),
-        "sides": sides(replay.joint_names),
-        "head": _head(replay),
-        "path": packed_array(replay.path[::stride].astype(np.float32)),
-        "reference": packed_array(replay.reference[::stride].astype(np.float32)),
-        "offset": packed_array(replay.offset[::stride].astype(np.float32)),
-        "clip": packed_array(clip[::stride].astype(np.uint16)),
-        "clips": short_names([replay.clip_names[number] for number in used.tolist()]),
-        "seconds": packed_array((replay.frame[::stride] / replay.rate).astype(np.float32)),
-        "jumped": packed_array(_any_of_stride(replay.jumped, stride).astype(np.uint8)),
-    }
-
-
-def replay_sentence(replay: Replay) -> str:
-    """What the replay shows, in words."""
-    worst = int(np.argmax(replay.offset))
+def replay_sentence(played: PlayedTrial) -> str:
+    """What a replay shows, in words."""
+    offset = played.offset
+    worst = int(np.argmax(offset))
+    seconds = played.trial.seconds * worst / max(len(offset) - 1, 1)
+    jumps = int(played.jumped.sum())
     return (
-        f"Asked for {asked(replay.speed, replay.turn_rate_deg)}, the character is farthest from its plan, "
-        f"{metres(float(replay.offset[worst]))}, after {worst / replay.rate:.0f} of "
-        f"{len(replay.offset) / replay.rate:.0f} seconds. "
-        f"It jumps {int(replay.jumped.sum()):,} times between {len(np.unique(replay.clip)):,} clips."
+        f"Asked for {asked(played.trial.speed, played.trial.turn_rate_deg)}, the character is farthest from "
+        f"its plan, {metres(float(offset[worst]))}, after {seconds:.0f} of {played.trial.seconds:.0f} "
+        f"seconds. It jumps {jumps:,} {'time' if jumps == 1 else 'times'}."
     )
 
 
@@ -87,23 +47,33 @@ def _side(name: str) -> int:
     return 0
 
 
-def _head(replay: Replay) -> list[int]:
-    """The joint of the head and its highest child, between which a head is drawn; [] without such a name."""
-    heads = [place for place, name in enumerate(replay.joint_names) if re.search("head", name, re.IGNORECASE)]
-    if not heads or len(replay.positions) == 0:
+def head_of(replays: Replays, parents: NDArray[np.int32]) -> list[int]:
+    """The joint of the head and its highest child, between which a head is drawn; [] without such a name.
+
+    Args:
+        replays: whose body.
+        parents: (J,) as drawn; what no bone holds has no head.
+    """
+    drawn = on_a_bone(parents)
+    heads = [
+        place
+        for place, name in enumerate(replays.joint_names)
+        if drawn[place] and re.search("head", name, re.IGNORECASE)
+    ]
+    if not heads or len(replays.positions) == 0:
         return []
     head = heads[0]
-    children = np.flatnonzero(replay.parents == head)
+    children = np.flatnonzero(parents == head)
     if len(children) == 0:
         return [head, head]
-    return [head, int(children[np.argmax(replay.positions[0, children, 1])])]
+    return [head, int(children[np.argmax(replays.positions[0, children, 1])])]
 
 
-def _drawn_parents(replay: Replay, hips: str | None) -> NDArray[np.int32]:
+def drawn_parents(parents: NDArray[np.int32], names: tuple[str, ...], hips: str | None) -> NDArray[np.int32]:
     """The parents, -1 also for the hips, for every joint above them, and for what else hangs on those."""
-    parents = replay.parents.astype(np.int32)
+    parents = parents.astype(np.int32)
     above: list[int] = []
-    joint = int(parents[replay.joint_names.index(hips)]) if hips in replay.joint_names else -1
+    joint = int(parents[names.index(hips)]) if hips in names else -1
     while joint >= 0:
         above.append(joint)
         joint = int(parents[joint])
@@ -112,14 +82,8 @@ def _drawn_parents(replay: Replay, hips: str | None) -> NDArray[np.int32]:
     return parents
 
 
-def _on_a_bone(parents: NDArray[np.int32]) -> NDArray[np.bool_]:
+def on_a_bone(parents: NDArray[np.int32]) -> NDArray[np.bool_]:
     """(J,) whether a bone begins or ends at a joint."""
     on = parents >= 0
     on[parents[on]] = True
     return on
-
-
-def _any_of_stride(jumped: NDArray[np.bool_], stride: int) -> NDArray[np.bool_]:
-    padded = np.zeros(-(-len(jumped) // stride) * stride, bool)
-    padded[: len(jumped)] = jumped
-    return np.asarray(padded.reshape(-1, stride).any(axis=1))

@@ -28,7 +28,7 @@ function coverageScatter(select) {
 
     function nearest(event) {
       const box = view.container().querySelector("canvas").getBoundingClientRect();
-      const [left, top] = view.origin();
+      const left = view.origin()[0] + view.padding().left, top = view.origin()[1] + view.padding().top;
       const x = view.scale("x"), y = view.scale("y");
       const chosen = highlighted();
       let best = -1, least = reach * reach;

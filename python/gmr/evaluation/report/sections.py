@@ -11,6 +11,8 @@ from gmr.evaluation.figures import Figure
 from gmr.evaluation.figures.clip_usage import never_played, recordings
 from gmr.evaluation.figures.measures import MEASURES
 from gmr.evaluation.figures.transition_matrix import flows
+from gmr.evaluation.figures.trial_maps import set_label
+from gmr.evaluation.replay import worst_trial
 from gmr.evaluation.report.method import SOURCE, terms
 from gmr.evaluation.report.replay import replay_sentence
 from gmr.evaluation.report.tables import Column, clip_columns, flow_columns, html_table, trial_columns
@@ -96,7 +98,7 @@ def _verdict(evaluation: Evaluation) -> str:
         "accuracy": "Accuracy",
         "relevance": "Clips",
         "transitions": "Transitions",
-        "replay": "Worst trial",
+        "replay": "Replay",
         "tables": "Tables",
         "method": "Method",
     }
@@ -131,10 +133,19 @@ def _notes(notes: Sequence[str]) -> str:
     return element("div", content, class_="notice calm", id="notes")
 
 
-def _figure(figure: Figure, controls: str = "", *, choice: str | None = None, hidden: bool = False) -> str:
+def _figure(
+    figure: Figure,
+    controls: str = "",
+    *,
+    choice: str | None = None,
+    hidden: bool = False,
+    film: int | None = None,
+) -> str:
     caption = element("figcaption", element("h3", text(figure.title)) + element("p", text(figure.sentence)))
     shape = "chart ring" if figure.chart["height"] == "container" else "chart"
     chart = element("div", "", class_=shape, data_figure=figure.name)
+    if film is not None:
+        chart = element("div", chart, class_="map", data_film=film)
     return element(
         "figure",
         caption + controls + chart,
@@ -186,17 +197,16 @@ def _maps(maps: Sequence[Figure], evaluation: Evaluation) -> str:
     for number in range(len(sets)):
         for place, name in enumerate(views):
             choice = name + (f" {number}" if len(sets) > 1 else "")
-            content += _figure(next(shown), choice=choice, hidden=number + place > 0)
+            film = None if evaluation.replays is None else 0
+            content += _figure(next(shown), choice=choice, hidden=number + place > 0, film=film)
     return element("div", controls + content, data_choose=True)
 
 
 def _set_choice(sets: Sequence[tuple[str, str]]) -> str:
     if len(sets) < 2:
         return ""
-    words = {"time": "aims at the timed plan", "velocity": "asks for speed and turn rate only"}
     options = "".join(
-        element("option", text(f"{scenario}, {words.get(tracking, tracking)}"), value=str(number))
-        for number, (scenario, tracking) in enumerate(sets)
+        element("option", text(set_label(*each)), value=str(number)) for number, each in enumerate(sets)
     )
     label = element("label", "Trials", for_="set-select")
     select = element("select", options, id="set-select", autocomplete="off")
@@ -218,8 +228,14 @@ def _folded(title: str, content: str, name: str) -> str:
 
 
 def _replay(evaluation: Evaluation) -> str:
-    sentence = replay_sentence(evaluation.replay)
-    return section("replay", "The worst trial, replayed", sentence, own(__package__, "player.html"))
+    if evaluation.replays is None:
+        return ""
+    worst = evaluation.replays.trials[worst_trial(evaluation.measured.trials)]
+    player = own(__package__, "player.html").replace("{{sentence}}", text(replay_sentence(worst)))
+    lead = (
+        "A click on a cell of the maps above replays its trial; so does the list here. First comes the worst."
+    )
+    return section("replay", "Any trial, replayed", lead, player)
 
 
 def _tables(evaluation: Evaluation) -> str:
