@@ -16,6 +16,7 @@ from gmr.cli.common import say
 from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.outcome import at_place, left_out, trouble_with_files
 from gmr.cli.progress import Phases
+from gmr.cli.pruning import Pruned, check_pruning, prune_folder, pruning_options
 
 if TYPE_CHECKING:
     from gmr.evaluation import Evaluation
@@ -31,6 +32,8 @@ Examples:
   gmr evaluate takes/ --preset mig2022         the pacing of the paper's authors
   gmr evaluate takes/ --tracking both          closed loop and open loop
   gmr evaluate takes/ --name left_foot=foot_l --name right_foot=foot_r
+  gmr evaluate takes/ --prune 30% --prune-out smaller/     and the same in less
+  gmr evaluate takes/ --prune lossless         without what no trial needs
   gmr evaluate takes/ --json > found.json      for a machine
 
 \b
@@ -73,6 +76,7 @@ Exit codes: 0 all files were evaluated, 1 some or all could not be (they are nam
     "--preset", type=click.Choice(["mig2022"]), help="Pace the trials as the authors of the paper did."
 )
 @evaluation_options
+@pruning_options
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the verdict.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
 def evaluate(
@@ -89,6 +93,8 @@ def evaluate(
     names: dict[str, str],
     unit: float | None,
     threads: int | None,
+    prune: float | str | None,
+    prune_out: Path,
     as_json: bool,
     quiet: bool,
 ) -> int:
@@ -112,6 +118,8 @@ def evaluate(
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):
         _check_places(None if no_report else out, tables, phases)
+        if prune is not None:
+            check_pruning(prune_out, phases)
         found = gmr.evaluate(
             folder,
             preset=preset,
@@ -125,8 +133,15 @@ def evaluate(
             unit=unit,
             progress=phases.tell,
         )
-        written = _write(found, None if no_report else out, tables, phases)
-    click.echo(_summary(found, written) if as_json else _verdict(found, written))
+        pruned = None
+        if prune is not None:
+            pruned = prune_folder(
+                found, folder, prune, prune_out, phases, threads=threads, names=names, unit=unit
+            )
+        written = _write(found, None if no_report else out, tables, phases, pruned)
+    click.echo(_summary(found, written, pruned) if as_json else _verdict(found, written))
+    if pruned is not None and not as_json:
+        click.echo(pruned.words())
     for sentence in left_out(found.failed):
         say(sentence)
     return 1 if found.failed else 0
@@ -145,7 +160,9 @@ def _check_places(out: Path | None, tables: Path | None, phases: Phases) -> None
             check_place(out)
 
 
-def _write(found: Evaluation, out: Path | None, tables: Path | None, phases: Phases) -> dict[str, Any]:
+def _write(
+    found: Evaluation, out: Path | None, tables: Path | None, phases: Phases, pruned: Pruned | None
+) -> dict[str, Any]:
     """Write what was asked for; the answer says where it lies."""
     written: dict[str, Any] = {}
     if tables is not None:
@@ -158,7 +175,7 @@ def _write(found: Evaluation, out: Path | None, tables: Path | None, phases: Pha
         phases.tell("writing the report", 0, 1)
         with at_place(out):
             out.parent.mkdir(parents=True, exist_ok=True)
-            found.report(out)
+            found.report(out, *([] if pruned is None else [pruned.section()]))
         written["report"] = str(out)
         phases.tell("writing the report", 1, 1)
     return written
@@ -184,7 +201,7 @@ def _verdict(found: Evaluation, written: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _summary(found: Evaluation, written: Mapping[str, Any]) -> str:
+def _summary(found: Evaluation, written: Mapping[str, Any], pruned: Pruned | None) -> str:
     summary = found.summary
     return json.dumps(
         {
@@ -202,6 +219,7 @@ def _summary(found: Evaluation, written: Mapping[str, Any]) -> str:
             "notes": found.notes,
             "failed": dict(found.failed),
             "written": dict(written),
+            **({} if pruned is None else {"pruned": pruned.summary()}),
         },
         indent=2,
         ensure_ascii=False,

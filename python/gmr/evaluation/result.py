@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import pyarrow
 
     from gmr.evaluation.simulation import Simulation
+    from gmr.pages.section import Section
 
     AnyTable: TypeAlias = "pyarrow.Table | Table"
 
@@ -253,15 +254,19 @@ class Evaluation:
             raise
         return tuple(path for path, _, _ in files)
 
-    def report(self, path: str | os.PathLike[str]) -> None:
+    def report(self, path: str | os.PathLike[str], *added: Section) -> None:
         """Write the report: one self-contained HTML file that opens offline.
+
+        Args:
+            path: the file.
+            added: sections of what was done with the evaluation, such as that of a pruning.
 
         Raises:
             OSError: the file cannot be written.
         """
         from gmr.evaluation.report import write_report
 
-        write_report(self, path)
+        write_report(self, path, added)
 
 
 def _arrow_where_installed(table: Table) -> AnyTable:

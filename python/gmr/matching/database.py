@@ -165,6 +165,12 @@ class Database:
         return Normalization(np.array(offset, np.float32), np.array(scale, np.float32))
 
     @property
+    def reach(self) -> tuple[int, int]:
+        """How many frames before and after its own a frame's features look at."""
+        frames = [round(time * self.rate) for group in self.schema.groups for time in group.times]
+        return max(0, -min(frames)), max(0, *frames)
+
+    @property
     def is_trajectory(self) -> NDArray[np.bool_]:
         """(D,) whether a number belongs to the path ahead, else to the pose."""
         return np.array(self.core.is_trajectory, bool)

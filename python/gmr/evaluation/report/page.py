@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Final
 
 from gmr.evaluation.figures import figures
@@ -14,14 +15,15 @@ from gmr.evaluation.report.sections import clip_groups, facts, sections
 from gmr.evaluation.result import Evaluation
 from gmr.pages.document import own
 from gmr.pages.page import Page
+from gmr.pages.section import Section
 
 __all__ = ["page"]
 
 _SCRIPTS: Final = ("scatter.js", "tables.js", "camera.js", "drawing.js", "film.js", "player.js", "maps.js")
 
 
-def page(evaluation: Evaluation) -> str:
-    """The report as HTML."""
+def page(evaluation: Evaluation, added: Sequence[Section] = ()) -> str:
+    """The report as HTML; ``added`` are sections of what was done with the evaluation."""
     drawn = list(figures(evaluation))
     clips, groups = clip_groups(evaluation)
     return Page(
@@ -29,9 +31,10 @@ def page(evaluation: Evaluation) -> str:
         eyebrow="Locomotion dataset evaluation",
         heading=evaluation.dataset,
         facts=facts(evaluation.summary),
-        sections=sections(evaluation, drawn),
-        figures=drawn,
+        sections=sections(evaluation, drawn, added),
+        figures=[*drawn, *(figure for section in added for figure in section.figures)],
         tables={
+            **{name: table for section in added for name, table in section.tables.items()},
             "trials": evaluation.measured.trials,
             "clips": recordings(evaluation.measured.clips),
             "jumps": flows(evaluation.measured.transitions),

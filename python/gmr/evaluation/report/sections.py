@@ -19,6 +19,7 @@ from gmr.evaluation.report.tables import Column, clip_columns, flow_columns, htm
 from gmr.evaluation.result import Evaluation, Summary
 from gmr.evaluation.words import count, duration
 from gmr.pages.document import element, items, own, section, text
+from gmr.pages.section import Section
 
 __all__ = ["clip_groups", "facts", "sections"]
 
@@ -37,12 +38,12 @@ def facts(summary: Summary) -> dict[str, str]:
     }
 
 
-def sections(evaluation: Evaluation, figures: Sequence[Figure]) -> str:
-    """The body of the page."""
+def sections(evaluation: Evaluation, figures: Sequence[Figure], added: Sequence[Section] = ()) -> str:
+    """The body of the page; what is ``added`` stands before the replay."""
     drawn = {figure.name: figure for figure in figures}
     maps = [figure for figure in figures if figure.name.startswith("trial_map_")]
     parts = [
-        _verdict(evaluation),
+        _verdict(evaluation, added),
         _failed(evaluation.failed),
         _notes(evaluation.notes),
         section(
@@ -72,6 +73,7 @@ def sections(evaluation: Evaluation, figures: Sequence[Figure]) -> str:
                 _figure(drawn[name]) for name in ("transition_kinds", "transition_matrix", "clip_circles")
             ),
         ),
+        *(each.html for each in added),
         _replay(evaluation),
         _tables(evaluation),
         section("method", "How it was measured", SOURCE, terms(evaluation.summary)),
@@ -92,12 +94,13 @@ def clip_groups(evaluation: Evaluation) -> tuple[list[str], dict[str, list[str]]
     return clips, {label: members for label, members in groups.items() if members}
 
 
-def _verdict(evaluation: Evaluation) -> str:
+def _verdict(evaluation: Evaluation, added: Sequence[Section]) -> str:
     places = {
         "coverage": "Coverage",
         "accuracy": "Accuracy",
         "relevance": "Clips",
         "transitions": "Transitions",
+        **{each.name: each.title for each in added},
         "replay": "Replay",
         "tables": "Tables",
         "method": "Method",

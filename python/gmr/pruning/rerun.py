@@ -1,0 +1,98 @@
+"""Runs made again on parts of a database: on threads of this process, or elsewhere with the same bits."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.errors import DatasetError
+from gmr.evaluation.simulation import Simulation
+from gmr.matching.database import Database
+from gmr.matching.trial import Profile, Tracking, TrialLog, run_trials
+from gmr.pruning.outcomes import Outcomes, joined, outcomes_of
+
+__all__ = ["Again", "Asked", "Rerun", "here", "made_again"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Again:
+    """Runs to be made again.
+
+    Attributes:
+        left: (N,) the rows that are left.
+        runs: (n,) their numbers, ascending.
+    """
+
+    left: NDArray[np.bool_]
+    runs: NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What all runs are made of: T trials, each once for every tracking."""
+
+    database: Database
+    profiles: tuple[Profile, ...]
+    trackings: tuple[Tracking, ...]
+
+    @classmethod
+    def of(cls, simulation: Simulation) -> Asked:
+        """As a simulation asked it."""
+        return cls(simulation.database, simulation.profiles, tuple(simulation.logs))
+
+
+Rerun: TypeAlias = Callable[[Asked, Sequence[Again]], Iterator[tuple[int, Outcomes | None]]]
+"""Makes runs again, several times: the number of each and what became of it, in the order in which they are
+done; None where nothing is left that may be jumped to."""
+
+
+def made_again(asked: Asked, again: Again) -> Outcomes | None:
+    """One of them, on this thread."""
+    logs = logs_on(asked, again)
+    return None if logs is None else joined([outcomes_of(log) for log in logs])
+
+
+def logs_on(asked: Asked, again: Again, threads: int = 1) -> list[TrialLog] | None:
+    """The logs of some runs on a part of the database, one for each tracking that there are runs of."""
+    try:
+        part = asked.database.subset(again.left)
+    except DatasetError:
+        return None
+    count, logs = len(asked.profiles), []
+    for number, tracking in enumerate(asked.trackings):
+        chosen = [asked.profiles[run - number * count] for run in again.runs if run // count == number]
+        if chosen:
+            logs.append(run_trials(part, chosen, tracking=tracking, threads=threads))
+    return logs
+
+
+def here(threads: int = 0) -> Rerun:
+    """On threads of this process; 0: as many as there are cores."""
+    count = threads or os.cpu_count() or 1
+
+    def run(asked: Asked, jobs: Sequence[Again]) -> Iterator[tuple[int, Outcomes | None]]:
+        with ThreadPoolExecutor(count, thread_name_prefix="gmr-prune") as pool:
+            waiting = iter(enumerate(jobs))
+            running = {pool.submit(made_again, asked, job): number for number, job in _some(waiting, count)}
+            try:
+                while running:
+                    for done in wait(running, return_when=FIRST_COMPLETED).done:
+                        number, result = running.pop(done), done.result()
+                        running |= {pool.submit(made_again, asked, job): n for n, job in _some(waiting, 1)}
+                        yield number, result
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
+
+    return run
+
+
+def _some(jobs: Iterator[tuple[int, Again]], count: int) -> Iterator[tuple[int, Again]]:
+    for _, job in zip(range(count), jobs, strict=False):
+        yield job

@@ -1,0 +1,282 @@
+"""A dataset made smaller: what can go unnoticed, what clips are worth, and files that do as was promised."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import gmr
+from gmr.evaluation import Evaluation
+from gmr.evaluation.simulation import Simulation
+from gmr.matching import Database
+from gmr.matching.trial import TrialLog, run_trials
+from gmr.pruning import Part, Pruning, Score, lossless, prune, write_pruned
+from gmr.pruning.outcomes import joined, outcomes_of
+from gmr.pruning.part import gaps, ranges_of, recordings_of, whole
+from gmr.pruning.prune import goal_of
+from locomotion import Arc
+from walker import write_walkers
+
+WALKS = {
+    "fast.bvh": Arc(8.0, 2.0),
+    "left/fast.bvh": Arc(8.0, 2.0, 50.0),
+    "left/slow.bvh": Arc(8.0, 1.0, 50.0),
+    "odd.bvh": Arc(6.0, 3.0, -90.0),
+    "slow.bvh": Arc(8.0, 1.0),
+    "twin.bvh": Arc(8.0, 2.0, 50.0),
+}
+GRID: dict[str, Any] = {"speeds": (1.0, 1.5, 2.0), "turn_rates_deg": (0.0, 50.0), "scenarios": "constant"}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    top = tmp_path_factory.mktemp("takes")
+    write_walkers(top, WALKS)
+    return top
+
+
+@pytest.fixture(scope="module", params=[False, True], ids=["plain", "mirrored"])
+def found(request: pytest.FixtureRequest, folder: Path) -> Evaluation:
+    return gmr.evaluate(folder, mirror=request.param, **GRID)
+
+
+@pytest.fixture(scope="module")
+def pruned(found: Evaluation) -> Pruning:
+    return prune(found, "40%")
+
+
+def simulation_of(found: Evaluation) -> Simulation:
+    assert found.simulation is not None
+    return found.simulation
+
+
+def again(simulation: Simulation, database: Database) -> Iterator[TrialLog]:
+    for tracking in simulation.logs:
+        yield run_trials(database, simulation.profiles, tracking=tracking)
+
+
+def score_on(simulation: Simulation, part: Part) -> Score:
+    database = simulation.database.subset(part.rows(simulation.database))
+    return joined([outcomes_of(log) for log in again(simulation, database)]).score
+
+
+def bits(log: TrialLog, trial: int) -> dict[str, bytes]:
+    values = {field.name: getattr(log, field.name) for field in fields(log)}
+    return {name: each[trial].tobytes() for name, each in values.items() if isinstance(each, np.ndarray)}
+
+
+def test_what_no_trial_shows_can_go_and_so_can_a_twin(found: Evaluation) -> None:
+    left = lossless(found)
+    assert left.ranges["twin.bvh"] == left.ranges["odd.bvh"] == ()
+    assert left.ranges["slow.bvh"]
+    assert left.ranges["left/fast.bvh"]
+    assert left.seconds < 32.0
+
+
+def test_without_what_can_go_every_trial_is_the_same_in_every_bit(found: Evaluation) -> None:
+    simulation = simulation_of(found)
+    left = lossless(found).rows(simulation.database)
+    logs = again(simulation, simulation.database.subset(left))
+    for before, after in zip(simulation.logs.values(), logs, strict=True):
+        assert not (~left)[after.row[after.row >= 0]].any()
+        for trial in range(len(before)):
+            assert bits(before, trial) == bits(after, trial)
+
+
+def test_a_trial_that_never_shows_a_clip_is_the_same_without_it(found: Evaluation) -> None:
+    simulation = simulation_of(found)
+    database, untouched = simulation.database, 0
+    for recording in recordings_of(database):
+        gone = ~whole(database).without(recording.name, (0, recording.frames)).rows(database)
+        logs = again(simulation, database.subset(~gone))
+        for before, after in zip(simulation.logs.values(), logs, strict=True):
+            for trial in range(len(before)):
+                if not gone[before.row[trial][before.row[trial] >= 0]].any():
+                    untouched += 1
+                    assert bits(before, trial) == bits(after, trial)
+    assert untouched > 10
+
+
+def test_importance_is_what_running_all_trials_without_the_clip_shows(pruned: Pruning) -> None:
+    simulation = pruned.simulation
+    before = score_on(simulation, whole(simulation.database))
+    assert before == pruned.outcomes.score
+    for row in pruned.importance.rows():
+        frames = next(r.frames for r in recordings_of(simulation.database) if r.name == row["clip"])
+        after = score_on(simulation, whole(simulation.database).without(row["clip"], (0, frames)))
+        assert row["offset_change"] == pytest.approx(after.offset - before.offset, abs=1e-12)
+        assert row["held_change"] == after.held - before.held
+    assert np.all(np.diff(pruned.importance["loss"]) <= 0)
+    assert set(pruned.importance["clip"][pruned.importance["runs"] == 0]) >= {"odd.bvh", "twin.bvh"}
+
+
+def test_every_point_of_the_curve_is_what_running_all_trials_on_it_shows(pruned: Pruning) -> None:
+    points = pruned.curve.points
+    assert [point.part.seconds for point in points] == sorted(
+        (point.part.seconds for point in points), reverse=True
+    )
+    for point in points:
+        again = score_on(pruned.simulation, point.part)
+        assert again.held == point.score.held
+        assert again.offset == pytest.approx(point.score.offset, abs=1e-12)
+        assert point.lossless <= (point.score == pruned.outcomes.score)
+    assert points[0].part == whole(pruned.simulation.database)
+    assert points[-1].part.seconds <= 0.5 * points[0].part.seconds
+    assert {point.lossless for point in points} == {False, True}
+
+
+def test_the_goal_is_reached_and_not_passed_by_more_than_a_move(pruned: Pruning) -> None:
+    seconds = pruned.chosen.part.seconds / pruned.curve.points[0].part.seconds
+    assert 0.5 < seconds <= 0.6
+    assert not pruned.chosen.lossless
+
+
+@given(st.data())
+@settings(max_examples=8)
+def test_clips_that_are_left_do_as_a_database_built_of_their_files(folder: Path, data: st.DataObject) -> None:
+    takes = gmr.read_folder(folder)
+    mirror = data.draw(st.booleans())
+    names = data.draw(st.sets(st.sampled_from(sorted(takes)), min_size=1))
+    every = Database.build(dict(takes), mirror=mirror)
+    clips = [name.removesuffix(" (mirrored)") in names for name in every.clip_names]
+    part = every.subset(np.array(clips)[every.clips])
+    built = Database.build(
+        {name: take for name, take in takes.items() if name in names},
+        mirror=mirror,
+        normalization=every.normalization,
+    )
+    profiles = [gmr.matching.Profile.constant(speed, 0.4, record=3.0) for speed in (1.2, 2.4)]
+    found, expected = (run_trials(database, profiles) for database in (part, built))
+    renumbered = np.flatnonzero(np.array(clips)[every.clips])[expected.row]
+    np.testing.assert_array_equal(found.row, renumbered)
+    for name in ("x", "z", "heading", "status", "cost_pose", "cost_trajectory", "discontinuity"):
+        assert getattr(found, name).tobytes() == getattr(expected, name).tobytes()
+
+
+def test_a_subset_of_the_wrong_length_or_of_nothing_is_refused(found: Evaluation) -> None:
+    database = simulation_of(found).database
+    with pytest.raises(ValueError, match="one entry for each of the"):
+        database.subset([True])
+    with pytest.raises(gmr.DatasetError, match="no clip has the 61 frames"):
+        database.subset(np.zeros(len(database), bool))
+
+
+@pytest.mark.parametrize("goal", ["lossless", "40%"])
+def test_the_files_do_what_the_manifest_promises(
+    found: Evaluation, folder: Path, tmp_path: Path, goal: str
+) -> None:
+    of, mirror = prune(found, goal), found.summary.settings["mirror"]
+    written = write_pruned(of, folder, tmp_path / "smaller")
+    told = json.loads((tmp_path / "smaller" / "manifest.json").read_text())
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["smaller"]
+
+    alone = gmr.evaluate(tmp_path / "smaller", mirror=mirror, **GRID)
+    trials = alone.measured.trials
+    promised = told["runs"]["files_by_themselves"]
+    assert promised["offset_mean"] == pytest.approx(trials["offset_mean"].mean(), abs=1e-12)
+    assert f"in {promised['held']} of 6 trials" in alone.verdict.headline
+
+    takes = gmr.read_folder(tmp_path / "smaller")
+    scale = gmr.matching.Normalization(
+        *(np.array(told["scale"][key], np.float32) for key in ("offset", "scale"))
+    )
+    database = Database.build(dict(takes), mirror=mirror, normalization=scale)
+    logs = list(again(of.simulation, database))
+    scaled = joined([outcomes_of(log) for log in logs]).score
+    assert told["runs"]["files_with_the_scale_of_the_whole"]["offset_mean"] == scaled.offset
+    assert told["identical"] == written.identical == (goal == "lossless")
+    if goal == "lossless":
+        for before, after in zip(of.simulation.logs.values(), logs, strict=True):
+            for name in ("x", "z", "heading", "cost_pose", "cost_trajectory", "discontinuity"):
+                assert getattr(before, name).tobytes() == getattr(after, name).tobytes()
+
+    assert told["seconds_after"] == pytest.approx(written.part.seconds)
+    assert sum(file["seconds"] for file in told["files"]) == pytest.approx(told["seconds_after"], abs=0.3)
+    for file in told["files"]:
+        source = gmr.read(folder / file["of"])
+        if file["frames"] == "all":
+            assert (tmp_path / "smaller" / file["file"]).read_bytes() == (folder / file["of"]).read_bytes()
+        else:
+            first, last = file["frames"]
+            np.testing.assert_array_equal(takes[file["file"]].rows, source.rows[first : last + 1])
+    assert {gone["clip"] for gone in told["gone"] if gone["whole"]} >= {"odd.bvh", "twin.bvh"}
+    in_words = (tmp_path / "smaller" / "manifest.md").read_text()
+    for name in ("`odd.bvh`, all of it: no trial needs it.", "byte for byte", "mean offset, m"):
+        assert name in in_words
+
+
+def test_nothing_is_left_where_writing_fails(
+    found: Evaluation, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    of = prune(found, "lossless")
+    (tmp_path / "there").mkdir()
+    (tmp_path / "there" / "mine.txt").write_text("")
+    with pytest.raises(gmr.DatasetError, match=r"there is there and not empty"):
+        write_pruned(of, folder, tmp_path / "there")
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("gmr.pruning.writing.write", full)
+    with pytest.raises(OSError, match="No space left"):
+        write_pruned(of, folder, tmp_path / "smaller")
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["mine.txt", "there"]
+
+
+def test_a_source_that_has_changed_is_refused(found: Evaluation, tmp_path: Path) -> None:
+    write_walkers(tmp_path / "other", {"fast.bvh": WALKS["fast.bvh"]})
+    with pytest.raises(gmr.DatasetError, match=r"no longer holds left/fast\.bvh; evaluate it again"):
+        write_pruned(prune(found), tmp_path / "other", tmp_path / "smaller")
+
+
+@pytest.mark.parametrize("goal", ["0%", "100%", "30", "-5%", "nan", "half", 1.5])
+def test_a_goal_that_is_no_share_is_refused(goal: float | str) -> None:
+    with pytest.raises(ValueError, match="no share of a dataset"):
+        goal_of(goal)
+
+
+def test_goals_are_shares_or_lossless() -> None:
+    assert [goal_of(goal) for goal in ("30%", "0.3", 0.3, "lossless")] == [0.3, 0.3, 0.3, "lossless"]
+
+
+def test_so_much_cannot_go_that_nothing_is_left(found: Evaluation) -> None:
+    with pytest.raises(gmr.GmrError, match=r"99\.9% of the seconds cannot go"):
+        prune(found, "99.9%")
+
+
+def test_an_evaluation_without_trials_is_refused(found: Evaluation) -> None:
+    import pickle
+
+    with pytest.raises(gmr.GmrError, match="without its trials; evaluate the clips again"):
+        lossless(pickle.loads(pickle.dumps(found)))
+
+
+@given(st.lists(st.booleans(), max_size=30), st.integers(1, 5))
+def test_ranges_and_gaps_make_up_the_whole(left: list[bool], least: int) -> None:
+    mask = np.array(left, bool)
+    ranges = ranges_of(mask, least)
+    covered = np.zeros(len(mask), bool)
+    for first, end in ranges:
+        covered[first:end] = True
+    assert not (mask & ~covered).any()
+    between = list(gaps(len(mask), ranges))
+    assert sum(end - first for first, end in (*ranges, *between)) == len(mask)
+    assert all(end - first >= least for first, end in between if first > 0 and end < len(mask))
+    for first, end in between:
+        covered[first:end] = True
+    assert covered.all()
+
+
+def test_a_score_tells_offset_and_lost_trials_together() -> None:
+    best, worse = Score(0.2, 10, 20), Score(0.3, 8, 20)
+    assert worse.worse_than(best) == pytest.approx(0.1 + 0.5 * 2 / 20)
+    assert Score(math.nan, 8, 20).worse_than(Score(math.nan, 10, 20)) == pytest.approx(0.05)

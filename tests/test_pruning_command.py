@@ -1,0 +1,76 @@
+"""``gmr evaluate --prune`` as people and scripts use it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import gmr
+from gmr.cli.commands import gmr as command
+from gmr.cli.common import finished
+from locomotion import Arc
+from walker import write_walkers
+
+SMALL = ("--speeds", "1,2", "--turn-rates", "0,50", "--scenario", "constant")
+TWIN = {"a.bvh": Arc(6.0, 1.0), "b.bvh": Arc(6.0, 2.0, 50.0), "twin.bvh": Arc(6.0, 1.0)}
+
+Captured = pytest.CaptureFixture[str]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    write_walkers(tmp_path / "takes", TWIN)
+    return tmp_path / "takes"
+
+
+def run(*arguments: object) -> int:
+    """The exit code of ``gmr evaluate ARGUMENTS``, in this process."""
+    return finished(command, ["evaluate", *map(str, arguments)])
+
+
+def test_the_smaller_dataset_is_written_and_the_report_shows_why(
+    folder: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    out, report = tmp_path / "new" / "smaller", tmp_path / "report.html"
+    assert run(folder, *SMALL, "--prune", "30%", "--prune-out", out, "-o", report) == 0
+    said = capsys.readouterr()
+    assert "of the seconds can go, and every trial stays the same, bit by bit." in " ".join(said.out.split())
+    assert f"Smaller dataset: {out}" in said.out
+    assert all(len(line) <= 100 for line in said.out.splitlines())
+    for phase in ("leaving out each clip: 3,", "removing frames: ", "checking what was written,"):
+        assert phase in said.err
+    left = json.loads((out / "manifest.json").read_text())
+    assert left["seconds_after"] <= 0.7 * left["seconds_before"]
+    assert sorted(gmr.read_folder(out)) == [file["file"] for file in left["files"]]
+    page = report.read_text()
+    for name in ('id="pruning"', 'href="#pruning"', 'data-figure="pruning_offset"', "importance"):
+        assert name in page
+
+
+def test_json_has_the_curve_and_the_importance(
+    folder: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(folder, *SMALL, "--prune", "lossless", "--no-report", "--json", "--quiet") == 0
+    found = json.loads(capsys.readouterr().out)["pruned"]
+    assert found["identical"] is True
+    assert found["folder"] == "pruned"
+    assert found["curve"][0]["share_kept"] == 1.0
+    # Of two alike the first is found.
+    assert {row["clip"]: row["runs"] for row in found["importance"]}["twin.bvh"] == 0
+    assert (tmp_path / "pruned" / "a.bvh").exists()
+    assert not (tmp_path / "pruned" / "twin.bvh").exists()
+
+
+def test_a_share_that_is_none_is_wrong_usage(folder: Path, capsys: Captured) -> None:
+    assert run(folder, *SMALL, "--prune", "30") == 2
+    assert "'30' is no share of a dataset that can go" in capsys.readouterr().err
+
+
+def test_a_folder_that_is_not_empty_is_found_before_the_work(folder: Path, capsys: Captured) -> None:
+    assert run(folder, *SMALL, "--prune", "30%", "--prune-out", folder) == 1
+    said = capsys.readouterr()
+    assert said.err == f"gmr: {folder} is there and not empty; give a new folder for the smaller dataset\n"
+    assert sorted(path.name for path in folder.iterdir()) == sorted(TWIN)
