@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 from gmr.evaluation.frames import Frames
 from gmr.evaluation.replays import PlayedTrial, Replays
+from gmr.evaluation.coverage_cells import Bins, cells_of
+from gmr.evaluation.coverage_symmetry import coverage_symmetry
+from gmr.evaluation.pose_coverage import BlendLimits, kinds_of
 from gmr.evaluation.result import Evaluation, Replay, Summary, Tables, Verdict
 from gmr.evaluation.scenario import Segment, Trial
 from gmr.evaluation.transitions import KINDS
@@ -74,6 +77,8 @@ def with_names(evaluation: Evaluation, rename: dict[str, str]) -> Evaluation:
             usage=renamed(measured.usage, "clip"),
             transitions=renamed(measured.transitions, "from_clip", "to_clip"),
             clips=renamed(measured.clips, "clip"),
+            pose_coverage=measured.pose_coverage,
+            coverage_symmetry=measured.coverage_symmetry,
         ),
         replay=replace(
             evaluation.replay,
@@ -155,7 +160,15 @@ def _assembled(
     replays = _replays(names, trials, frames, replay, random)
     return Evaluation(
         dataset="fake",
-        measured=Tables(trials, windows, usage, _transitions(names, popularity, frames, random), clips),
+        measured=Tables(
+            trials=trials,
+            coverage=windows,
+            usage=usage,
+            transitions=_transitions(names, popularity, frames, random),
+            clips=clips,
+            pose_coverage=_pose_coverage(windows, random),
+            coverage_symmetry=coverage_symmetry("fake", windows),
+        ),
         summary=Summary(
             dataset="fake",
             clip_count=count - sum(copies),
@@ -229,6 +242,29 @@ def _trials(trackings: tuple[str, ...], scenarios: tuple[str, ...], random: np.r
         for name, values in new.items():
             columns.setdefault(name, []).extend(np.asarray(values).tolist())
     return Table(columns)
+
+
+def _pose_coverage(windows: Table, random: np.random.Generator) -> Table:
+    """Cells as full as they are, at distances that chance gives."""
+    cells = cells_of(windows, Bins())
+    weight, clip = windows["weight"], windows["clip"]
+    seconds = np.array([weight[cell].sum() for cell in cells])
+    nearest = random.gamma(2.0, 0.03, len(seconds))
+    nearest[::17] = np.nan
+    return Table(
+        {
+            "dataset": np.full(len(seconds), "fake", object),
+            "speed": cells.speed,
+            "turn_rate_deg": cells.turn_rate_deg,
+            "seconds": seconds,
+            "clips": np.array([len(set(clip[cell].tolist())) for cell in cells]),
+            "nearest_mean": nearest,
+            "nearest_p95": 1.6 * nearest,
+            "entropy": random.uniform(0, 5, len(seconds)),
+            "feature_distance_mean": 12 * nearest,
+            "kind": kinds_of(seconds, nearest, BlendLimits()),
+        }
+    )
 
 
 def _transitions(

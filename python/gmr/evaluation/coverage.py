@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.evaluation.coverage_cells import Bins, cells_of
 from gmr.evaluation.frames import Frames
 from gmr.table import Table
 
@@ -30,13 +31,14 @@ def coverage_table(dataset: str, frames: Frames) -> Table:
         for: the weights of a clip's rows add up to the clip's duration.
     """
     centre, first, last = _windows(frames)
+    followed = frames.has_next
     seconds = (last - first) / frames.rate
     count = np.bincount(frames.clip[centre], minlength=len(frames.clip_names))
     duration = np.maximum(np.diff(frames.starts) - 1, 0) / frames.rate
     clip = frames.clip[centre]
 
     def mean(per_step: NDArray[np.float64]) -> NDArray[np.float64]:
-        total = np.concatenate([[0.0], np.cumsum(np.where(frames.has_next, per_step, 0.0))])
+        total = np.concatenate([[0.0], np.cumsum(np.where(followed, per_step, 0.0))])
         return np.asarray((total[last] - total[first]) / seconds)
 
     return Table(
@@ -58,7 +60,8 @@ def _windows(frames: Frames) -> tuple[NDArray[np.int64], NDArray[np.int64], NDAr
     """Rows of the middle, first and last frame of every window."""
     half = round(frames.rate / 2)
     row = np.arange(len(frames))
-    start, end = frames.starts[frames.clip], frames.starts[frames.clip + 1] - 1
+    starts = frames.starts
+    start, end = starts[frames.clip], starts[frames.clip + 1] - 1
     short = end - start < 2 * half
     whole = ~short & (row - half >= start) & (row + half <= end)
     single = short & (end > start) & (row == (start + end) // 2)
@@ -66,21 +69,6 @@ def _windows(frames: Frames) -> tuple[NDArray[np.int64], NDArray[np.int64], NDAr
     first = np.where(short[centre], start[centre], centre - half)
     last = np.where(short[centre], end[centre], centre + half)
     return centre, first, last
-
-
-@dataclass(frozen=True, slots=True)
-class Bins:
-    """The cells of a coverage map.
-
-    Attributes:
-        speed: height of a cell, m/s; the first begins at 0.
-        turn_rate_deg: width of a cell, degrees/s; one is centred on 0, so that left and right are alike.
-        blur: standard deviation of the Gaussian that smooths the map, in cells; 0 for none.
-    """
-
-    speed: float = 0.1
-    turn_rate_deg: float = 5.0
-    blur: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,26 +98,24 @@ def density(coverage: Table, bins: Bins | None = None) -> Density:
         bins: the cells and the blur.
     """
     bins = bins or Bins()
-    speed, turn = coverage["speed"], coverage["turn_rate_deg"]
-    speed_edges = bins.speed * np.arange(int(np.max(speed, initial=0.0) / bins.speed) + 2.0)
-    widest = int(np.max(np.abs(turn), initial=0.0) / bins.turn_rate_deg + 0.5)
-    turn_edges = bins.turn_rate_deg * (np.arange(2.0 * widest + 2) - widest - 0.5)
-    edges = (speed_edges, turn_edges)
-    seconds, _, _ = np.histogram2d(speed, turn, bins=edges, weights=coverage["weight"])
-    _, clip = np.unique(coverage["clip"].astype(str), return_inverse=True)
-    cell = np.stack(
-        [
-            np.searchsorted(speed_edges, speed, "right") - 1,
-            np.searchsorted(turn_edges, turn, "right") - 1,
-            clip,
-        ],
-        axis=1,
-    )
-    clips = np.zeros(seconds.shape, np.int64)
-    present = np.unique(cell, axis=0)
-    np.add.at(clips, (present[:, 0], present[:, 1]), 1)
+    cells = cells_of(coverage, bins)
+    size = int(np.prod(cells.shape))
+    clip, clip_count = _numbered(coverage["clip"])
+    present = np.unique(cells.cell * clip_count + clip) // max(clip_count, 1)
+    seconds = np.bincount(cells.cell, coverage["weight"], size).astype(np.float64).reshape(cells.shape)
+    clips = np.bincount(present, minlength=size).reshape(cells.shape)
     blurred = _blur(_blur(seconds, bins.blur).T, bins.blur).T
-    return Density(speed_edges, turn_edges, seconds, clips, blurred)
+    return Density(cells.speed_edges, cells.turn_rate_edges_deg, seconds, clips, blurred)
+
+
+def _numbered(names: NDArray[np.object_]) -> tuple[NDArray[np.int64], int]:
+    """(N,) a number for each name, and how many names there are; quick where names come in runs."""
+    if len(names) == 0:
+        return np.zeros(0, np.int64), 0
+    first = np.flatnonzero(np.concatenate([[True], names[1:] != names[:-1]]))
+    number: dict[str, int] = {}
+    numbers = [number.setdefault(name, len(number)) for name in names[first].tolist()]
+    return np.repeat(numbers, np.diff(first, append=len(names))), len(number)
 
 
 def symmetry(density: Density) -> float:

@@ -147,7 +147,13 @@ def evaluate(
         measured=tables,
         summary=_summary(dataset, database, motions, unit, settings),
         verdict=verdict(
-            tables.trials, tables.coverage, tables.clips, tables.usage, notes=notes, failed=failed
+            tables.trials,
+            tables.coverage,
+            tables.clips,
+            tables.usage,
+            poses=tables.pose_coverage,
+            notes=notes,
+            failed=failed,
         ),
         replay=replay_of(simulation, frames, worst_trial(tables.trials)),
         notes=notes,

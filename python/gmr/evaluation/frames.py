@@ -47,7 +47,8 @@ class Frames:
     @property
     def starts(self) -> NDArray[np.int64]:
         """(C + 1,) first row of every clip, and N."""
-        return np.searchsorted(self.clip, np.arange(len(self.clip_names) + 1)).astype(np.int64)
+        numbers = np.arange(len(self.clip_names) + 1, dtype=self.clip.dtype)
+        return np.searchsorted(self.clip, numbers).astype(np.int64)
 
     @property
     def has_next(self) -> NDArray[np.bool_]:

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from gmr.evaluation.coverage import coverage_table
+from gmr.evaluation.coverage_symmetry import coverage_symmetry
 from gmr.evaluation.frames import Frames
 from gmr.evaluation.log import Log
+from gmr.evaluation.pose_coverage import pose_coverage, poses_of
 from gmr.evaluation.result import Tables
 from gmr.evaluation.scenario import Trial
 from gmr.evaluation.simulation import Simulation, log_of
@@ -31,6 +33,7 @@ def measured(dataset: str, simulation: Simulation, frames: Frames) -> Tables:
     """
     sets = list(_sets(simulation, frames))
     counts = [play_counts(part.log, frames) for part in sets]
+    coverage = coverage_table(dataset, frames)
     return Tables(
         trials=Table.joined(
             [
@@ -38,7 +41,7 @@ def measured(dataset: str, simulation: Simulation, frames: Frames) -> Tables:
                 for part in sets
             ]
         ),
-        coverage=coverage_table(dataset, frames),
+        coverage=coverage,
         usage=Table.joined(
             [
                 usage_table(dataset, part.scenario, part.tracking, played, frames)
@@ -52,6 +55,8 @@ def measured(dataset: str, simulation: Simulation, frames: Frames) -> Tables:
             ]
         ),
         clips=clips_table(dataset, np.sum(counts, axis=0), frames),
+        pose_coverage=pose_coverage(coverage, frames, poses_of(simulation.database)),
+        coverage_symmetry=coverage_symmetry(dataset, coverage),
     )
 
 

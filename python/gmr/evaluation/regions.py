@@ -107,6 +107,11 @@ def judged(trials: Table) -> NDArray[np.bool_]:
         chosen &= trials[column] == (usual if np.any(present == usual) else present[0])
     return chosen
 
+    @property
+    def borders(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """(V + 1,) m/s and (W + 1,) degrees/s: half-way between the trials, and as far out at both ends."""
+        return _borders(self.speeds, 0.25), _borders(self.turn_rates_deg, 25.0)
+
 
 def _seconds_in_cells(
     coverage: Table, speeds: NDArray[np.float64], turn_rates: NDArray[np.float64]

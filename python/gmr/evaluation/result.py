@@ -145,6 +145,14 @@ class Tables:
             played_seconds played_share used_share.
             ``played_share`` is of the time of all trials, ``used_share`` of the clip's own frames.
 
+        pose_coverage: one row a cell of 0.1 m/s by 5 degrees/s that the clips reach:
+            dataset speed turn_rate_deg seconds clips nearest_mean nearest_p95 entropy
+            | feature_distance_mean kind.
+            ``nearest_mean`` is metres to the nearest pose of another clip there; see
+            :func:`gmr.evaluation.pose_coverage.pose_coverage`.
+        coverage_symmetry: one row a cell of 0.25 m/s by 10 degrees/s in which the clips turn:
+            dataset speed turn_rate_deg left_seconds right_seconds symmetry.
+
     A mirrored copy of a clip is named "<clip> (mirrored)".
     """
 
@@ -153,6 +161,8 @@ class Tables:
     usage: Table
     transitions: Table
     clips: Table
+    pose_coverage: Table
+    coverage_symmetry: Table
 
 
 @dataclass(frozen=True, slots=True)

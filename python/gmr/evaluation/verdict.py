@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.evaluation.blending_sentences import blending_sentences, lead_in_sentences
 from gmr.evaluation.clip_sentences import clip_sentences
 from gmr.evaluation.failure_sentences import capture_sentences, failure_sentences
 from gmr.evaluation.regions import Grid, Limits, failures, held_rectangle
@@ -37,6 +38,7 @@ def verdict(
     clips: Table,
     usage: Table,
     *,
+    poses: Table | None = None,
     notes: Sequence[str] = (),
     failed: Mapping[str, str] | None = None,
     limits: Limits | None = None,
@@ -45,6 +47,7 @@ def verdict(
 
     Args:
         trials, coverage, clips, usage: the tables of the evaluation.
+        poses: its ``pose_coverage``; nothing is said of blending without it.
         notes: what was noticed or assumed on the way, one sentence each.
         failed: files that could not be used -> why.
         limits: within which a trial is said to hold.
@@ -61,7 +64,9 @@ def verdict(
             *scenario_sentences(trials, coverage, grid.limits),
             *_side_sentences(coverage, mirrored),
             *clip_sentences(clips, usage),
+            *(blending_sentences(poses) if poses is not None else ()),
             *capture_sentences(grid, regions, mirrored),
+            *(lead_in_sentences(poses, grid) if poses is not None else ()),
             *notes,
             *_failed_sentences(failed or {}),
         ),

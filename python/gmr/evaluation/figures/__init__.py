@@ -14,9 +14,11 @@ from gmr.evaluation.figures.coverage_scatter import coverage_scatter
 from gmr.evaluation.figures.frame_usage import frame_usage
 from gmr.evaluation.figures.holds_map import holds_map
 from gmr.evaluation.figures.measures import MEASURES
+from gmr.evaluation.figures.pose_distance import pose_distance
 from gmr.evaluation.figures.transition_kinds import transition_kinds
 from gmr.evaluation.figures.transition_matrix import transition_matrix
 from gmr.evaluation.figures.trial_maps import trial_map, trial_sets
+from gmr.evaluation.figures.turn_symmetry import turn_symmetry
 from gmr.evaluation.result import Evaluation
 from gmr.pages.figure import Figure
 from gmr.replacing import replacing
@@ -28,6 +30,8 @@ def figures(evaluation: Evaluation) -> Iterator[Figure]:
     """Every figure of the report, in its order."""
     yield coverage_scatter(evaluation)
     yield coverage_density(evaluation)
+    yield pose_distance(evaluation)
+    yield turn_symmetry(evaluation)
     for scenario, tracking in trial_sets(evaluation):
         yield holds_map(evaluation, scenario, tracking)
         for measure in MEASURES:

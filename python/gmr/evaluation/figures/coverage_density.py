@@ -17,7 +17,7 @@ from gmr.pages.figure import Figure
 from gmr.pages.theme import turn_ticks
 from gmr.table import Table
 
-__all__ = ["coverage_density", "seconds_near_pairs"]
+__all__ = ["coverage_density", "seconds_near_pairs", "widest_turn"]
 
 _CELLS: Final = Bins(speed=0.1, turn_rate_deg=5.0, blur=0.0)
 _SECONDS: Final = Classes("amount", (0.1, 0.3, 1.0, 3.0, 10.0, 30.0))
@@ -30,7 +30,7 @@ def coverage_density(evaluation: Evaluation) -> Figure:
     windows = evaluation.measured.coverage
     held = density(windows, _CELLS)
     pairs = seconds_near_pairs(evaluation)
-    limit = _widest_turn(windows, pairs)
+    limit = widest_turn(windows, pairs)
     cells = _cells(held)
     inside = np.abs(cells["turn_rate_deg"]) <= limit
     return Figure(
@@ -53,7 +53,7 @@ def seconds_near_pairs(evaluation: Evaluation) -> Table:
     return Table({"speed": speed.ravel(), "turn_rate_deg": turn.ravel(), "seconds": grid.seconds.ravel()})
 
 
-def _widest_turn(windows: Table, pairs: Table) -> float:
+def widest_turn(windows: Table, pairs: Table) -> float:
     """Turn rate, in deg/s, up to which the picture reaches."""
     turn = np.abs(windows["turn_rate_deg"])
     usual = float(np.quantile(turn, 1 - _RARE)) if len(turn) else 0.0

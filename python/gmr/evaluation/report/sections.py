@@ -50,7 +50,10 @@ def sections(evaluation: Evaluation, figures: Sequence[Figure], added: Sequence[
             "coverage",
             "What the dataset holds",
             "Speed and turn rate, as means over one second that slides through every clip.",
-            _scatter(drawn["coverage_scatter"], evaluation) + _figure(drawn["coverage_density"]),
+            _scatter(drawn["coverage_scatter"], evaluation)
+            + "".join(
+                _figure(drawn[name]) for name in ("coverage_density", "pose_distance", "turn_symmetry")
+            ),
         ),
         section(
             "accuracy",
