@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.frames import Frames
-from gmr.evaluation.replays import PlayedTrial, Replays
 from gmr.evaluation.coverage_cells import Bins, cells_of
 from gmr.evaluation.coverage_symmetry import coverage_symmetry
+from gmr.evaluation.frames import Frames
 from gmr.evaluation.pose_coverage import BlendLimits, kinds_of
+from gmr.evaluation.replays import PlayedTrial, Replays
 from gmr.evaluation.result import Evaluation, Replay, Summary, Tables, Verdict
 from gmr.evaluation.scenario import Segment, Trial
 from gmr.evaluation.transitions import KINDS

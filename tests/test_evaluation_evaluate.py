@@ -33,6 +33,8 @@ COLUMNS = {
     "coverage": "dataset clip frame speed turn_rate_deg",
     "usage": "dataset scenario clip frame count",
     "transitions": "dataset scenario from_clip from_frame to_clip to_frame kind count",
+    "pose_coverage": "dataset speed turn_rate_deg seconds clips nearest_mean nearest_p95 entropy",
+    "coverage_symmetry": "dataset speed turn_rate_deg left_seconds right_seconds symmetry",
 }
 
 

@@ -191,6 +191,7 @@ def test_what_fails_although_it_is_there_needs_a_take_that_leads_into_it() -> No
             turn_rates_deg=np.array([0.0, 30.0]),
             offset=np.zeros((1, 2)),
             speed_error=np.zeros((1, 2)),
+            speed_error_share=np.zeros((1, 2)),
             turn_rate_error_deg=np.zeros((1, 2)),
             held=np.array([[True, held]]),
             seconds=np.array([[9.0, seconds]]),

@@ -97,6 +97,11 @@ class Grid:
             speeds, turn_rates, offset, speed_error, share, turn_rate_error, held, seconds, limits, timed
         )
 
+    @property
+    def borders(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """(V + 1,) m/s and (W + 1,) degrees/s: half-way between the trials, and as far out at both ends."""
+        return _borders(self.speeds, 0.25), _borders(self.turn_rates_deg, 25.0)
+
 
 def judged(trials: Table) -> NDArray[np.bool_]:
     """Which trials the verdict judges: those of constant speed on a timed path, else the first."""
@@ -106,11 +111,6 @@ def judged(trials: Table) -> NDArray[np.bool_]:
         present = trials[column][chosen]
         chosen &= trials[column] == (usual if np.any(present == usual) else present[0])
     return chosen
-
-    @property
-    def borders(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """(V + 1,) m/s and (W + 1,) degrees/s: half-way between the trials, and as far out at both ends."""
-        return _borders(self.speeds, 0.25), _borders(self.turn_rates_deg, 25.0)
 
 
 def _seconds_in_cells(

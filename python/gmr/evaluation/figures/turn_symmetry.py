@@ -70,8 +70,11 @@ def _sentence(sides: Table) -> str:
     )
 
 
+_AXIS: Final = {"grid": False, "tickCount": 8}
+
+
 def _chart() -> dict[str, Any]:
-    turn = {"type": "quantitative", "title": "Turn rate to either side, deg/s", "axis": {"grid": False}}
+    turn = {"type": "quantitative", "title": "Turn rate to either side, deg/s", "axis": _AXIS}
     speed = {"type": "quantitative", "title": "Speed, m/s", "axis": {"grid": False}}
     return {
         "width": "container",
