@@ -33,12 +33,16 @@ class Pruned:
 
     def words(self) -> str:
         """For a terminal."""
+        from gmr.evaluation.words import duration
+        from gmr.pruning.manifest import cost_of_files
         from gmr.pruning.words import headline, sentences
 
         width = min(shutil.get_terminal_size((100, 24)).columns, 100)
         lines = ["", *textwrap.wrap(headline(self.found), width), ""]
         for sentence in sentences(self.found):
             lines += textwrap.wrap(sentence, width, initial_indent="- ", subsequent_indent="  ")
+        files = f"The files hold {duration(self.written.part.seconds)}. {cost_of_files(self.written)}"
+        lines += textwrap.wrap(files, width, initial_indent="- ", subsequent_indent="  ")
         return "\n".join([*lines, "", f"Smaller dataset: {self.written.folder}"])
 
     def section(self) -> Section:
@@ -57,6 +61,7 @@ class Pruned:
             "curve": [_finite(row) for row in self.found.curve.table.rows()],
             "importance": [_finite(row) for row in self.found.importance.rows()],
             "folder": str(self.written.folder),
+            "seconds": self.written.part.seconds,
             "identical": self.written.identical,
         }
 

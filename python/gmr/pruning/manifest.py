@@ -18,7 +18,7 @@ from gmr.pruning.prune import Pruning
 if TYPE_CHECKING:
     from gmr.pruning.writing import Written
 
-__all__ = ["manifest", "manifest_words"]
+__all__ = ["cost_of_files", "manifest", "manifest_words"]
 
 NEVER = "no trial needs it"
 
@@ -110,7 +110,7 @@ def manifest_words(of: Pruning, written: Written, motions: Mapping[str, Motion])
         f"# {of.dataset}, smaller",
         "",
         f"{duration(before)} of motion were evaluated; {duration(after)} are here: {percent(share)} went. "
-        + _costs(written),
+        + cost_of_files(written),
         "",
         "| | mean offset, m | trials that hold |",
         "|---|---|---|",
@@ -140,7 +140,8 @@ def manifest_words(of: Pruning, written: Written, motions: Mapping[str, Motion])
     return "\n".join(lines) + "\n"
 
 
-def _costs(written: Written) -> str:
+def cost_of_files(written: Written) -> str:
+    """What the written files cost, in a sentence."""
     if written.identical:
         return (
             "It costs nothing: with the features scaled as in the whole dataset every trial is the same, bit "

@@ -29,7 +29,7 @@ from gmr.pruning.cutting import Piece, origins, pieces_of
 from gmr.pruning.manifest import manifest, manifest_words
 from gmr.pruning.outcomes import Score, joined, outcomes_of, same_bits
 from gmr.pruning.part import Part, recordings_of
-from gmr.pruning.prune import Pruning
+from gmr.pruning.prune import LOSSLESS, Pruning
 from gmr.pruning.rerun import Asked
 
 __all__ = ["Written", "check_new_folder", "write_pruned"]
@@ -44,7 +44,8 @@ class Written:
     Attributes:
         folder: where it is.
         pieces: its files.
-        part: what is left of the dataset; more than was asked where a cut would have changed a trial.
+        part: what is left of the dataset; with "lossless" more than no trial needs, where a cut would change
+            one.
         whole: how well the whole dataset does.
         kept_scale: how well the files do with the features scaled as in the whole dataset.
         own_scale: how well they do by themselves.
@@ -157,7 +158,7 @@ def _written_and_checked(
         logs = _run(asked, kept)
         back = [_renumbered(log, origins(asked.database, kept, pieces)) for log in logs]
         same = same_bits(of.simulation, back)
-        if same.all() or not of.chosen.lossless:
+        if same.all() or of.goal != LOSSLESS:
             break
         part = _cut_less(of, part, back, same)
         shutil.rmtree(beside)
