@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fake_tables import fake_tables
 from gmr.evaluation.coverage_cells import Bins, cells_of
 from gmr.evaluation.coverage_symmetry import coverage_symmetry
 from gmr.evaluation.frames import Frames
@@ -71,14 +72,13 @@ def with_names(evaluation: Evaluation, rename: dict[str, str]) -> Evaluation:
     measured = evaluation.measured
     return replace(
         evaluation,
-        measured=Tables(
-            trials=measured.trials,
+        measured=replace(
+            measured,
             coverage=renamed(measured.coverage, "clip"),
             usage=renamed(measured.usage, "clip"),
             transitions=renamed(measured.transitions, "from_clip", "to_clip"),
             clips=renamed(measured.clips, "clip"),
-            pose_coverage=measured.pose_coverage,
-            coverage_symmetry=measured.coverage_symmetry,
+            graph=renamed(measured.graph, "from_clip", "to_clip"),
         ),
         replay=replace(
             evaluation.replay,
@@ -168,6 +168,7 @@ def _assembled(
             clips=clips,
             pose_coverage=_pose_coverage(windows, random),
             coverage_symmetry=coverage_symmetry("fake", windows),
+            **fake_tables(trials, names, random),
         ),
         summary=Summary(
             dataset="fake",

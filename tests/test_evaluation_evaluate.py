@@ -100,7 +100,8 @@ def test_mirrored_copies_make_left_and_right_alike(folder: Path) -> None:
 def test_the_tables_have_the_columns_that_were_promised_first(found: Evaluation) -> None:
     for name, columns in COLUMNS.items():
         assert found.tables()[name].column_names[: len(columns.split())] == tuple(columns.split())
-    assert set(found.tables()) == {*COLUMNS, "clips"}
+    single = {"segments", "timeline", "error_bins", "error_fits"}
+    assert set(found.tables()) == {*COLUMNS, "clips", "graph", *single}
 
 
 def test_coverage_has_the_speeds_and_turns_of_the_clips(found: Evaluation) -> None:

@@ -152,6 +152,7 @@ def evaluate(
             tables.clips,
             tables.usage,
             poses=tables.pose_coverage,
+            segments=tables.segments,
             notes=notes,
             failed=failed,
         ),

@@ -9,12 +9,16 @@ import numpy as np
 
 from gmr.evaluation.coverage import coverage_table
 from gmr.evaluation.coverage_symmetry import coverage_symmetry
+from gmr.evaluation.distributions import error_bins_table, error_fits_table
 from gmr.evaluation.frames import Frames
+from gmr.evaluation.graph import graph_table
 from gmr.evaluation.log import Log
 from gmr.evaluation.pose_coverage import pose_coverage, poses_of
 from gmr.evaluation.result import Tables
 from gmr.evaluation.scenario import Trial
+from gmr.evaluation.segments import segments_table
 from gmr.evaluation.simulation import Simulation, log_of
+from gmr.evaluation.timeline import timeline_table
 from gmr.evaluation.transitions import Transitions, transitions_of, transitions_table
 from gmr.evaluation.trials import trials_table
 from gmr.evaluation.usage import clips_table, play_counts, usage_table
@@ -57,6 +61,21 @@ def measured(dataset: str, simulation: Simulation, frames: Frames) -> Tables:
         clips=clips_table(dataset, np.sum(counts, axis=0), frames),
         pose_coverage=pose_coverage(coverage, frames, poses_of(simulation.database)),
         coverage_symmetry=coverage_symmetry(dataset, coverage),
+        segments=Table.joined(
+            [segments_table(dataset, part.trials, part.tracking, part.log) for part in sets]
+        ),
+        timeline=Table.joined(
+            [timeline_table(dataset, part.trials, part.tracking, part.log, part.transitions) for part in sets]
+        ),
+        error_bins=Table.joined(
+            [error_bins_table(dataset, part.trials, part.tracking, part.log) for part in sets]
+        ),
+        error_fits=Table.joined(
+            [error_fits_table(dataset, part.trials, part.tracking, part.log) for part in sets]
+        ),
+        graph=Table.joined(
+            [graph_table(dataset, part.scenario, part.tracking, part.transitions, frames) for part in sets]
+        ),
     )
 
 

@@ -152,6 +152,24 @@ class Tables:
             :func:`gmr.evaluation.pose_coverage.pose_coverage`.
         coverage_symmetry: one row a cell of 0.25 m/s by 10 degrees/s in which the clips turn:
             dataset speed turn_rate_deg left_seconds right_seconds symmetry.
+        segments: one row a stretch at one speed of a trial whose speed switches: dataset scenario tracking
+            speed turn_rate_deg segment from_speed to_speed start seconds
+            speed_error turn_rate_error_deg speed_deviation turn_rate_deviation_deg offset_mean
+            rise_time overshoot settling_time.
+            ``start`` counts from where recording begins; ``from_speed`` and the last three, which measure
+            how a new speed is taken up, are NaN in the first stretch; see
+            :class:`gmr.evaluation.step_response.StepResponse`.
+        timeline: one row a quarter of a second of a trial: dataset scenario tracking speed turn_rate_deg
+            seconds asked_speed played_speed played_turn_rate_deg offset
+            search_cost search_cost_pose search_cost_trajectory jumps
+        error_bins: one row a bin of the errors of a trial: dataset scenario tracking speed turn_rate_deg
+            error_of from to share. ``error_of`` is "speed" or "turn_rate_deg".
+        error_fits: one row for either error of a trial: dataset scenario tracking speed turn_rate_deg
+            error_of components share_1 mean_1 deviation_1 share_2 mean_2 deviation_2.
+            The one or two normal distributions that tell the errors best.
+        graph: one row an edge of the transition graph: dataset scenario tracking from_clip to_clip count
+            share inter_clip intra_clip forced_end discontinuity_mean.
+            ``share`` is of all jumps out of ``from_clip``.
 
     A mirrored copy of a clip is named "<clip> (mirrored)".
     """
@@ -163,6 +181,11 @@ class Tables:
     clips: Table
     pose_coverage: Table
     coverage_symmetry: Table
+    segments: Table
+    timeline: Table
+    error_bins: Table
+    error_fits: Table
+    graph: Table
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,14 +7,16 @@ from collections.abc import Iterator
 import numpy as np
 
 from gmr.evaluation.regions import Grid, Limits, judged
-from gmr.evaluation.words import count, number
+from gmr.evaluation.words import count, duration, listing, number
 from gmr.table import Table
 
-__all__ = ["scenario_sentences"]
+__all__ = ["scenario_sentences", "taken_up"]
 
 
-def scenario_sentences(trials: Table, coverage: Table, limits: Limits) -> Iterator[str]:
-    """One sentence for every further scenario and tracking."""
+def scenario_sentences(
+    trials: Table, coverage: Table, segments: Table | None, limits: Limits
+) -> Iterator[str]:
+    """One sentence for every further scenario and tracking, and one more on how new speeds are taken up."""
     own = judged(trials)
     usual = _away(trials.take(own))
     for chosen in _sets(trials):
@@ -29,7 +31,33 @@ def scenario_sentences(trials: Table, coverage: Table, limits: Limits) -> Iterat
             if timed and not np.isnan(trials["switched_speed"]).all()
             else ""
         )
-        yield f"{_asked(part)}, it does so in {int(held.sum())} of {count(held.size, 'trial')}{away}{beside}."
+        done = f"it does so in {int(held.sum())} of {count(held.size, 'trial')}"
+        yield f"{_asked(part)}, {done}{away}{beside}."
+        if segments is not None:
+            own_segments = segments["scenario"] == part["scenario"][0]
+            stretches = segments.take(own_segments & (segments["tracking"] == part["tracking"][0]))
+            if len(stretches):
+                yield taken_up(stretches)
+
+
+def taken_up(segments: Table) -> str:
+    """How often and how soon a new speed is taken up, faster and slower, from a table of segments."""
+    change = segments["to_speed"] - segments["from_speed"]
+    ways = [
+        _way(segments.take(chosen), what)
+        for what, chosen in (("speeding up", change > 0), ("slowing down", change < 0))
+        if chosen.any()
+    ]
+    if not ways:
+        return "No speed is asked for that differs from the one before."
+    return f"A new speed is taken up, to within the limit and before the next switch, {listing(ways)}."
+
+
+def _way(switches: Table, what: str) -> str:
+    settled = switches["settling_time"]
+    taken = np.isfinite(settled)
+    soon = f" (in {duration(float(np.median(settled[taken])))} in the median)" if taken.any() else ""
+    return f"in {int(taken.sum())} of {count(len(settled), 'switch', 'switches')} when {what}{soon}"
 
 
 def _sets(trials: Table) -> list[np.ndarray[tuple[int, ...], np.dtype[np.bool_]]]:

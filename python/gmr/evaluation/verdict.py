@@ -39,6 +39,7 @@ def verdict(
     usage: Table,
     *,
     poses: Table | None = None,
+    segments: Table | None = None,
     notes: Sequence[str] = (),
     failed: Mapping[str, str] | None = None,
     limits: Limits | None = None,
@@ -48,6 +49,7 @@ def verdict(
     Args:
         trials, coverage, clips, usage: the tables of the evaluation.
         poses: its ``pose_coverage``; nothing is said of blending without it.
+        segments: that of the stretches of switching trials, where there are any.
         notes: what was noticed or assumed on the way, one sentence each.
         failed: files that could not be used -> why.
         limits: within which a trial is said to hold.
@@ -61,7 +63,7 @@ def verdict(
             _what_counts(grid),
             *_straight_sentences(grid),
             *failure_sentences(grid, regions),
-            *scenario_sentences(trials, coverage, grid.limits),
+            *scenario_sentences(trials, coverage, segments, grid.limits),
             *_side_sentences(coverage, mirrored),
             *clip_sentences(clips, usage),
             *(blending_sentences(poses) if poses is not None else ()),

@@ -9,12 +9,15 @@ from pathlib import Path
 from gmr.errors import MissingExtraError
 from gmr.evaluation.figures.clip_circles import clip_circles
 from gmr.evaluation.figures.clip_usage import clip_usage
+from gmr.evaluation.figures.cost_over_time import cost_over_time
 from gmr.evaluation.figures.coverage_density import coverage_density
 from gmr.evaluation.figures.coverage_scatter import coverage_scatter
+from gmr.evaluation.figures.error_distributions import error_distributions
 from gmr.evaluation.figures.frame_usage import frame_usage
 from gmr.evaluation.figures.holds_map import holds_map
 from gmr.evaluation.figures.measures import MEASURES
 from gmr.evaluation.figures.pose_distance import pose_distance
+from gmr.evaluation.figures.speed_switches import speed_switches
 from gmr.evaluation.figures.transition_kinds import transition_kinds
 from gmr.evaluation.figures.transition_matrix import transition_matrix
 from gmr.evaluation.figures.trial_maps import trial_map, trial_sets
@@ -36,6 +39,9 @@ def figures(evaluation: Evaluation) -> Iterator[Figure]:
         yield holds_map(evaluation, scenario, tracking)
         for measure in MEASURES:
             yield trial_map(evaluation, measure, scenario, tracking)
+    yield from speed_switches(evaluation)
+    yield cost_over_time(evaluation)
+    yield from error_distributions(evaluation)
     yield clip_usage(evaluation)
     yield frame_usage(evaluation)
     yield transition_kinds(evaluation)

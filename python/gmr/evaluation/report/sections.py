@@ -63,6 +63,12 @@ def sections(evaluation: Evaluation, figures: Sequence[Figure], added: Sequence[
             _maps(maps, evaluation),
         ),
         section(
+            "course",
+            "What happens in a trial",
+            "",
+            _figures(drawn, "speed_switches", "cost_over_time", "error_distribution"),
+        ),
+        section(
             "relevance",
             "Which clips carry it",
             "",
@@ -160,6 +166,11 @@ def _figure(
         hidden=hidden,
         id=figure.name,
     )
+
+
+def _figures(drawn: Mapping[str, Figure], *names: str) -> str:
+    """The figures whose names begin with one of these, where there are any."""
+    return "".join(_figure(figure) for name, figure in drawn.items() if name.startswith(names))
 
 
 def _scatter(figure: Figure, evaluation: Evaluation) -> str:
