@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 import gmr
 import walkers
 import x3d_model
+import x3d_schema
 from gmr import FormatError, FormatWarning, GmrError, Motion, Skeleton, SkeletonError
 from gmr.body.measures import UP_TURNS, turned_upright
 from gmr.demo import demo_folder
@@ -62,6 +63,11 @@ def quietly(motion: Motion, **options: Any) -> bytes:
         return b"".join(x3d_chunks(motion, **options))
 
 
+def faults(data: bytes) -> list[str]:
+    """What the schema and the object model of X3D have against a file."""
+    return [*x3d_schema.faults(data), *x3d_model.faults(data)]
+
+
 def figure(motion: Motion) -> Figure:
     return figure_of(humanoid_of(motion, None, None))
 
@@ -85,7 +91,7 @@ def test_joints_are_where_the_motion_has_them(path: Path) -> None:
     motion = gmr.read(path)
     data = quietly(motion)
     assert_the_law_holds(motion, data)
-    assert x3d_model.faults(data) == []
+    assert faults(data) == []
 
 
 @pytest.mark.parametrize("name", LARGE)
@@ -97,7 +103,7 @@ def test_joints_of_large_files_are_where_the_motion_has_them(name: str) -> None:
         motion = gmr.read(GMR_DATA / name)
     data = quietly(motion)
     assert_the_law_holds(motion, data)
-    assert x3d_model.faults(data) == []
+    assert faults(data) == []
 
 
 def turned(rng: np.random.Generator, shape: tuple[int, ...]) -> Any:
@@ -119,7 +125,7 @@ def test_the_law_holds_however_joints_turn(seed: int, frames: int, unit: str) ->
     )
     data = quietly(motion)
     assert_the_law_holds(motion, data)
-    assert x3d_model.faults(data) == []
+    assert faults(data) == []
 
 
 def walk() -> Motion:
@@ -254,7 +260,7 @@ def test_a_single_frame_is_a_posture_that_stays() -> None:
     assert not list(player.root.iter("TimeSensor"))
     assert not list(player.root.iter("ROUTE"))
     assert_the_law_holds(motion[33:34], data)
-    assert x3d_model.faults(data) == []
+    assert faults(data) == []
 
 
 @given(st.text(min_size=1), st.text(min_size=1))
@@ -269,14 +275,107 @@ def test_names_are_only_names(name: str, joint: str) -> None:
     )
     data = quietly(renamed)
     assert len(Player.of(data).joints) >= len(LOA_1)
-    assert x3d_model.faults(data) == []
+    assert faults(data) == []
 
 
 def test_markup_in_names_is_text() -> None:
     nasty = "a<b>&\"'\0.x"
-    motion = walk()[:2].with_name(nasty)
-    player = Player.of(quietly(motion))
-    assert player.humanoid.get("name") == "a<b>&\"'\N{REPLACEMENT CHARACTER}"
+    data = quietly(walk()[:2].with_name(nasty))
+    (world,) = Player.of(data).root.iter("WorldInfo")
+    assert world.get("title") == "a<b>&\"'\N{REPLACEMENT CHARACTER}"
+    assert faults(data) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "token"),
+    [
+        ("walks/07_01.v2.bvh", "07_01.v2"),
+        ("walk fast (1).bvh", "walk_fast__1_"),
+        ("/", "motion"),
+        ("", "motion"),
+        ("\u6b69", "_"),
+    ],
+)
+def test_a_humanoid_is_named_by_an_nmtoken(name: str, token: str) -> None:
+    data = quietly(walk()[:2].with_name(name))
+    assert Player.of(data).humanoid.get("name") == token
+    assert faults(data) == []
+
+
+def of_size(metres: float) -> Motion:
+    """A walk of a body whose unit is so long; it is 25 units tall."""
+    motion = walk()[:3]
+    return Motion.from_pose(
+        motion.skeleton, motion.rotations, motion.translations, motion.frame_time, unit=metres
+    )
+
+
+@pytest.mark.parametrize("metres", [1e-3, 0.0564, 1e20])
+def test_a_body_of_any_size_that_metres_can_say_is_valid(metres: float) -> None:
+    motion = of_size(metres)
+    data = quietly(motion)
+    assert faults(data) == []
+    assert_the_law_holds(motion, data)
+
+
+@pytest.mark.parametrize("metres", [1e-9, 1e-6, 1e-4, 1e35, 1e200])
+def test_a_body_that_metres_cannot_say_is_refused(metres: float) -> None:
+    with pytest.raises(GmrError, match=r"m tall, .*state how long a unit is: motion.with_unit"):
+        x3d_chunks(of_size(metres))
+
+
+@pytest.fixture(scope="module")
+def short_walk() -> str:
+    """A file without a fault."""
+    data = quietly(walk()[:2])
+    assert faults(data) == []
+    return data.decode()
+
+
+def test_joints_and_segments_share_no_name() -> None:
+    joints = articulations()
+    parts = [joint.segment for joint in joints.values()]
+    assert len({*joints, *parts}) == len(joints) + len(parts)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('loa="1"', 'loa="5"'),
+        ('name="cmu_07_01" version', 'name="cmu 07 01" version'),
+        ('version="2.0"', 'version="1.0"'),
+        ('level="1"', 'level="6"'),
+        (' level="1"', ""),
+        ('profile="Immersive"', 'profile="Immerse"'),
+        ("0.93 0.94 0.96", "1.93 0.94 0.96"),
+        ('containerField="skeleton"', 'containerField="skeletons"'),
+        ('<Sphere radius="', '<Sphere radius="-'),
+        ('<Sphere radius="', '<Sphere radius="0" class="'),
+        ('USE="hanim_l_hip"', 'USE="hanim_l_hop"'),
+        ('toNode="hanim_l_hip"', 'toNode="hanim_l_hop"'),
+        ('DEF="hanim_l_hip"', 'DEF="hanim_r_hip"'),
+        ('DEF="clock"', 'DEF="1clock"'),
+        ('center="0 ', 'center="'),
+        ('center="0 ', 'center="0, '),
+        ('center="0 ', 'center="nan '),
+        ('key="0\n', 'key="0 x\n'),
+        ('keyValue="', 'keyValue="1 '),
+        ('loop="true"', 'loop="TRUE"'),
+        ("<head>\n", '<head>\n<meta name="a" content="b"/>\n'),
+        ("<Scene>\n", "<Scene>\n<Sphere/>\n"),
+        ("<Scene>\n", "<Scene>\nwalk\n"),
+        ("</Shape>", "<Sphere/></Shape>"),
+        ("<Appearance>", "<Appearance/><Appearance>"),
+        ('cycleInterval="', 'cycleInterval="-'),
+        ('<HAnimJoint DEF="hanim_l_hip"', '<Transform/><HAnimJoint DEF="hanim_l_hip"'),
+        (' fromField="fraction_changed"', ""),
+        ('global="true"', 'globe="true"'),
+        ('fieldOfView="0.785398"', 'fieldOfView="3.2"'),
+    ],
+)
+def test_the_rules_of_the_schema_find_what_breaks_them(short_walk: str, old: str, new: str) -> None:
+    assert old in short_walk
+    assert x3d_schema.faults(short_walk.replace(old, new, 1).encode())
 
 
 def test_a_guessed_unit_is_said_and_a_stated_one_is_not() -> None:

@@ -6,6 +6,7 @@ gmr writes the format, and does not read it.
 from __future__ import annotations
 
 import os
+import re
 import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -70,8 +71,8 @@ def x3d_chunks(
     Raises:
         SkeletonError: hips, legs or feet are not known.
         FormatError: a place is no finite number.
-        GmrError: there are no frames, or several without a frame time; the unit is not known; or there is no
-            such frame.
+        GmrError: there are no frames, or several without a frame time; the unit is not known, or makes the
+            body smaller or larger than X3D can say in metres; or there is no such frame.
 
     Warns:
         FormatWarning: the unit was guessed, or there is no rest pose.
@@ -106,7 +107,13 @@ def _text(lines: list[str] | Iterator[str]) -> bytes:
 
 
 def _title(figure: Figure) -> str:
-    return Path(figure.body.motion.name or "motion").stem
+    return Path(figure.body.motion.name or "motion").stem or "motion"
+
+
+def _token(title: str) -> str:
+    """The title as an NMTOKEN of XML, which the schema wants the name of a humanoid to be; of letters only
+    those that all editions of XML know."""
+    return re.sub(r"[^\w.\-]", "_", title, flags=re.ASCII)
 
 
 def _head(figure: Figure) -> Iterator[str]:
@@ -141,7 +148,7 @@ def _humanoid(figure: Figure) -> Iterator[str]:
     yield opened(
         "HAnimHumanoid",
         def_="hanim_humanoid",
-        name=_title(figure),
+        name=_token(_title(figure)),
         version="2.0",
         loa="1",
         skeletalConfiguration="BASIC",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gmr.body.measures import UP_TURNS
 from gmr.formats.hanim import articulations
-from gmr.formats.x3d_humanoid import BLOCK, Humanoid, Moves
+from gmr.formats.x3d_humanoid import BLOCK, Humanoid, Moves, check_size
 from gmr.quaternions import conjugate, multiply, rotated
 
 __all__ = ["Figure", "figure_of"]
@@ -66,7 +66,11 @@ class Figure:
 
 
 def figure_of(body: Humanoid) -> Figure:
-    """Looks at all frames of a humanoid, a few at a time."""
+    """Looks at all frames of a humanoid, a few at a time.
+
+    Raises:
+        GmrError: it is smaller or larger than a file can say.
+    """
     names = list(body.stands)
     first: dict[str, Moves] = {}
     low, high = ({name: np.full(3, sign * np.inf) for name in names} for sign in (1, -1))
@@ -84,6 +88,7 @@ def figure_of(body: Humanoid) -> Figure:
     centres = _centres(body, middle, tips)
     ends = np.array([*centres.values(), *(centres[name] + tip for name, tip in tips.items())])
     stature = float(np.ptp(ends[:, 1]))
+    check_size(stature, body.motion)
     shift = -np.array([centres["humanoid_root"][0], ends[:, 1].min(), centres["humanoid_root"][2]])
     placed = {name: centre + shift for name, centre in centres.items()}
     root = names[0]

@@ -28,13 +28,16 @@ from gmr.quaternions import IDENTITY, conjugate, multiply, rotated
 from gmr.skinning.driving.rest_poses import MotionRest
 from gmr.world import motion_rotations
 
-__all__ = ["BLOCK", "Humanoid", "Moves", "humanoid_of"]
+__all__ = ["BLOCK", "Humanoid", "Moves", "check_size", "humanoid_of"]
 
 Floats = NDArray[np.float64]
 
 BLOCK = 1 << 12
 """Frames that are looked at together, so that a long motion needs no memory for all of its rotations; the
 body is looked for in as many at the beginning."""
+_SIZES = (0.02, 1e30)
+"""Metres: in a smaller body the micrometres of a file move joints by more than a ten-thousandth of it, and
+shapes come to nothing; a larger one comes to the end of single precision, which X3D's fields hold."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +135,8 @@ def humanoid_of(motion: Motion, names: Mapping[str, str] | None, rest: int | Non
 
     Raises:
         SkeletonError: hips, legs or feet are not known.
-        GmrError: there are no frames, the unit is not known, or no such frame.
+        GmrError: there are no frames, the unit is not known, the body is smaller or larger than a file can
+            say, or no such frame.
         FormatError: a place is no finite number.
     """
     if not motion.frame_count:
@@ -144,6 +148,7 @@ def humanoid_of(motion: Motion, names: Mapping[str, str] | None, rest: int | Non
     parts = find_parts(at_home[:BLOCK], scene, names or {})
     begins = {part: stands[0].joint for part, stands in parts.items()}
     resting, odd = rest_of(at_home, scene, begins, rest)
+    check_size(metres * float(np.ptp(resting.places, axis=0).max()), at_home)
     stands = named_stands(parts, resting.places[:, 1])
     lead = default_turns(at_home, resting, stands)
     to_rest = conjugate(multiply(resting.upright, resting.rotations))
@@ -165,3 +170,14 @@ def _check_finite(motion: Motion) -> None:
                 "cannot say. Fill the gap, or cut the frame out.",
                 file=motion.name,
             )
+
+
+def check_size(metres: float, motion: Motion) -> None:
+    """Refuses a body that is smaller or larger than a file can say."""
+    least, most = _SIZES
+    if not least <= metres <= most:
+        raise GmrError(
+            f"the body of {motion.name or 'the motion'} would be {metres:.3g} m tall, and X3D, whose unit is "
+            f"the metre, is written for {least:g} to {most:g} m; state how long a unit is: "
+            "motion.with_unit('cm')"
+        )
