@@ -255,3 +255,31 @@ def test_a_disk_that_fills_up_is_one_sentence_and_leaves_nothing(folder: Path, t
     assert "(while writing tables); no file was left half-written" in done.stderr
     assert done.stderr.count("\n") == 1
     assert not (tmp_path / "tables").exists()
+
+
+def test_scenarios_are_named_again_and_again_also_by_file(
+    folder: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    (tmp_path / "bend.csv").write_text("x,z,t\n0,0,0\n0,3,3\n1,5,5\n")
+    chosen = ("--scenario", "start-stop", "--scenario", tmp_path / "bend.csv")
+    assert run(folder, "--speeds", "1", "--turn-rates", "0", "--no-report", "--json", *chosen) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [row["scenario"] for row in found["trials"]] == ["constant", "start-stop", "bend"]
+    assert found["trials"][2]["path"] == "as timed"
+
+
+@pytest.mark.parametrize(
+    ("scenario", "says"),
+    [
+        ("stroll", "unknown scenario 'stroll'"),
+        ("bad.csv", "bad.csv:2: z is 'far'"),
+        ("no.csv", "cannot be read"),
+    ],
+)
+def test_a_scenario_that_cannot_be_is_wrong_usage(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured, scenario: str, says: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bad.csv").write_text("x,z\n0,far\n1,1\n")
+    assert run(folder, "--no-report", "--scenario", scenario) == 2
+    assert says in capsys.readouterr().err

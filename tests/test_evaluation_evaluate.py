@@ -101,7 +101,7 @@ def test_the_tables_have_the_columns_that_were_promised_first(found: Evaluation)
     for name, columns in COLUMNS.items():
         assert found.tables()[name].column_names[: len(columns.split())] == tuple(columns.split())
     single = {"segments", "timeline", "error_bins", "error_fits"}
-    assert set(found.tables()) == {*COLUMNS, "clips", "graph", *single}
+    assert set(found.tables()) == {*COLUMNS, "clips", "graph", "paths", *single}
 
 
 def test_coverage_has_the_speeds_and_turns_of_the_clips(found: Evaluation) -> None:
@@ -286,7 +286,7 @@ def test_settings_that_make_no_sense_are_refused_before_anything_is_read(tmp_pat
     with pytest.raises(ValueError, match="unknown tracking"):
         gmr.evaluate(missing, tracking="speed")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="unknown scenario"):
-        gmr.evaluate(missing, scenarios="slalom")
+        gmr.evaluate(missing, scenarios="stroll")
     with pytest.raises(ValueError, match="each tracking once"):
         gmr.evaluate(missing, tracking=("time", "time"))
     with pytest.raises(ValueError, match="switched speed must be"):

@@ -17,9 +17,11 @@ from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.outcome import at_place, left_out, trouble_with_files
 from gmr.cli.progress import Phases
 from gmr.cli.pruning import Pruned, check_pruning, prune_folder, pruning_options
+from gmr.cli.scenarios import check_scenarios, scenario_options
 
 if TYPE_CHECKING:
     from gmr.evaluation import Evaluation
+    from gmr.evaluation.scenarios.asked import Asked
     from gmr.matching.trial import Tracking
 
 EXAMPLES: Final = """
@@ -31,6 +33,7 @@ Examples:
   gmr evaluate takes/ --speeds 0.5:4:0.5 --turn-rates -180:180:45
   gmr evaluate takes/ --preset mig2022         the pacing of the paper's authors
   gmr evaluate takes/ --tracking both          closed loop and open loop
+  gmr evaluate takes/ --scenario slalom --scenario splines --scenario my_path.csv
   gmr evaluate takes/ --name left_foot=foot_l --name right_foot=foot_r
   gmr evaluate takes/ --prune 30% --prune-out smaller/     and the same in less
   gmr evaluate takes/ --prune lossless         without what no trial needs
@@ -65,13 +68,7 @@ Exit codes: 0 all files were evaluated, 1 some or all could not be (they are nam
     show_default=True,
     help="Steer to where the path has the character at each time, or only ask for speed and turn rate.",
 )
-@click.option(
-    "--scenario",
-    type=click.Choice(["constant", "switching", "both"]),
-    default="both",
-    show_default=True,
-    help="Trials at one speed throughout, or at two in turn.",
-)
+@scenario_options
 @click.option(
     "--preset", type=click.Choice(["mig2022"]), help="Pace the trials as the authors of the paper did."
 )
@@ -86,7 +83,8 @@ def evaluate(
     tables: Path | None,
     mirror: bool,
     tracking: str,
-    scenario: str,
+    scenarios: tuple[Asked, ...],
+    seed: int,
     speeds: tuple[float, ...] | None,
     turn_rates: tuple[float, ...] | None,
     preset: str | None,
@@ -106,15 +104,8 @@ def evaluate(
     shows it all; it is one HTML file that opens without a network.
     """
     import gmr
-    from gmr.evaluation.scenario import DEFAULT_SPEEDS, DEFAULT_TURN_RATES_DEG, planned_trials
 
-    scenarios = ("constant", "switching") if scenario == "both" else (scenario,)
-    try:
-        planned_trials(
-            scenarios, speeds or DEFAULT_SPEEDS, turn_rates or DEFAULT_TURN_RATES_DEG, preset or "even"
-        )
-    except ValueError as error:
-        raise click.UsageError(f"{error}.") from error
+    check_scenarios(scenarios, speeds, turn_rates, preset, seed)
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):
         _check_places(None if no_report else out, tables, phases)
@@ -125,6 +116,7 @@ def evaluate(
             preset=preset,
             mirror=mirror,
             scenarios=scenarios,
+            seed=seed,
             tracking=("time", "velocity") if tracking == "both" else cast("Tracking", tracking),
             speeds=speeds,
             turn_rates_deg=turn_rates,

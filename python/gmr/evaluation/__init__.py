@@ -7,6 +7,22 @@ datasets through motion matching techniques", MIG 2022.
 from __future__ import annotations
 
 from gmr.evaluation.result import Evaluation, Replay, Summary, Tables, Verdict
+from gmr.evaluation.scenario import Segment, Trial
+from gmr.evaluation.scenarios import PathPoints, Scenario, Slalom, Splines, StartStop
 from gmr.table import Table
 
-__all__ = ["Evaluation", "Replay", "Summary", "Table", "Tables", "Verdict"]
+__all__ = [
+    "Evaluation",
+    "PathPoints",
+    "Replay",
+    "Scenario",
+    "Segment",
+    "Slalom",
+    "Splines",
+    "StartStop",
+    "Summary",
+    "Table",
+    "Tables",
+    "Trial",
+    "Verdict",
+]

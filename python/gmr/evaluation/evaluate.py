@@ -25,8 +25,9 @@ from gmr.evaluation.scenario import (
     SWITCH_EVERY,
     SWITCHED_SPEED,
     Switching,
-    planned_trials,
 )
+from gmr.evaluation.scenarios.asked import Asked, asked_trials, scenarios_of
+from gmr.evaluation.scenarios.on_grid import OnGrid
 from gmr.evaluation.simulation import frames_of, simulated
 from gmr.evaluation.verdict import verdict
 from gmr.evaluation.words import some_of
@@ -51,13 +52,14 @@ def evaluate(
     source: Source,
     *,
     preset: str | None = None,
-    scenarios: str | Sequence[str] = ("constant", "switching"),
+    scenarios: Asked | Sequence[Asked] = ("constant", "switching"),
     mirror: bool = False,
     tracking: Tracking | Sequence[Tracking] = "time",
     speeds: Sequence[float] | None = None,
     turn_rates_deg: Sequence[float] | None = None,
     switched_speed: float = SWITCHED_SPEED,
     switch_every: float = SWITCH_EVERY,
+    seed: int = 0,
     threads: int | None = None,
     progress: Progress | None = None,
     names: Mapping[str, str | int] | None = None,
@@ -75,7 +77,9 @@ def evaluate(
         preset: pacing of the trials: "mig2022" for the durations of the paper's authors; by default every
             trial has 3 s of run-up, 2 s to settle and 30 s that are recorded.
         scenarios: "constant": each trial keeps its speed; "switching": the speed alternates with
-            ``switched_speed``; both by default.
+            ``switched_speed``; both by default. Further "start-stop", "slalom", "splines", a CSV file of path
+            points, or any :class:`gmr.evaluation.Scenario`. The constant one, by which a dataset is judged,
+            is run beside these where neither it nor the switching one is named.
         mirror: add the mirror image of each clip.
         tracking: "time": the character is steered to where the path has it at each time; "velocity": it is
             only asked for the speed and turn rate; or both, each in trials of its own.
@@ -83,6 +87,7 @@ def evaluate(
         turn_rates_deg: degrees per second, positive to the left; -100 to 100 in steps of 25 by default.
         switched_speed: the other speed of switching trials, metres per second.
         switch_every: seconds from one switch to the next.
+        seed: of the random splines.
         threads: how many to use, all cores by default (or 0); the result does not depend on it.
         progress: called with the name of a phase ("reading", "preparing", "simulating", "measuring"), how
             much of it is done, and of how much; what it raises ends the evaluation.
@@ -96,7 +101,8 @@ def evaluate(
 
     Raises:
         DatasetError: there is no motion, none is usable, or hips, legs or feet are not found.
-        FormatError: there is no such folder; or a file cannot be read and ``errors`` is "raise".
+        FormatError: there is no such folder; or a file cannot be read and ``errors`` is "raise"; or a file of
+            path points is none.
         ValueError: a speed, turn rate, preset, scenario, tracking or thread count that makes no sense.
     """
     trackings = _trackings(tracking)
@@ -104,13 +110,17 @@ def evaluate(
         raise TypeError(f"names are joints by role, as in {{'left_foot': 'foot_l'}}, not {names!r:.60}")
     thread_total = thread_count(threads)
     switching = Switching(*_numbers("switched_speed and switch_every", (switched_speed, switch_every)))
-    trials = planned_trials(
-        (scenarios,) if isinstance(scenarios, str) else tuple(scenarios),
-        DEFAULT_SPEEDS if speeds is None else _numbers("speeds", speeds),
-        DEFAULT_TURN_RATES_DEG if turn_rates_deg is None else _numbers("turn_rates_deg", turn_rates_deg),
-        preset or "even",
-        switching,
+    grid = OnGrid(
+        speeds=DEFAULT_SPEEDS if speeds is None else _numbers("speeds", speeds),
+        turn_rates_deg=(
+            DEFAULT_TURN_RATES_DEG if turn_rates_deg is None else _numbers("turn_rates_deg", turn_rates_deg)
+        ),
+        preset=preset or "even",
+        switching=switching,
     )
+    grid.trials()
+    asked = scenarios_of(scenarios, grid, seed)
+    trials = asked_trials(asked)
     tell = progress or _silent
     with _format_warnings() as odd:
         dataset, motions, failed = _motions(source, thread_total, errors, tell)
@@ -130,18 +140,19 @@ def evaluate(
     tell("measuring", 0, 1)
     settings = {
         "preset": preset or "even",
-        "scenarios": list(dict.fromkeys(trial.scenario for trial in trials)),
+        "scenarios": [scenario.name for scenario in asked],
         "mirror": mirror,
         "tracking": list(trackings),
-        "speeds": sorted({trial.speed for trial in trials}),
-        "turn_rates_deg": sorted({trial.turn_rate_deg for trial in trials}),
+        "speeds": sorted(map(float, grid.speeds)),
+        "turn_rates_deg": sorted(map(float, grid.turn_rates_deg)),
         "switched_speed": switching.speed,
         "switch_every": switching.every,
         "limits": asdict(Limits()),
     }
     frames = frames_of(database)
     tables = measured(dataset, simulation, frames)
-    notes, failed = (*odd, *database.notes), failed | dict(database.excluded)
+    noted = (note for scenario in asked for note in getattr(scenario, "notes", ()))
+    notes, failed = (*odd, *database.notes, *noted), failed | dict(database.excluded)
     found = Evaluation(
         dataset=dataset,
         measured=tables,

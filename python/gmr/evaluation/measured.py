@@ -13,6 +13,7 @@ from gmr.evaluation.distributions import error_bins_table, error_fits_table
 from gmr.evaluation.frames import Frames
 from gmr.evaluation.graph import graph_table
 from gmr.evaluation.log import Log
+from gmr.evaluation.paths import paths_table
 from gmr.evaluation.pose_coverage import pose_coverage, poses_of
 from gmr.evaluation.result import Tables
 from gmr.evaluation.scenario import Trial
@@ -76,6 +77,7 @@ def measured(dataset: str, simulation: Simulation, frames: Frames) -> Tables:
         graph=Table.joined(
             [graph_table(dataset, part.scenario, part.tracking, part.transitions, frames) for part in sets]
         ),
+        paths=Table.joined([paths_table(dataset, part.trials, part.tracking, part.log) for part in sets]),
     )
 
 

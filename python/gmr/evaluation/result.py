@@ -11,7 +11,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,12 @@ if TYPE_CHECKING:
     AnyTable: TypeAlias = "pyarrow.Table | Table"
 
 __all__ = ["Evaluation", "Replay", "Summary", "Tables", "Verdict"]
+
+
+PATH_COLUMNS: Final = (
+    *("dataset", "scenario", "tracking", "path", "seconds"),
+    *("planned_x", "planned_z", "walked_x", "walked_z"),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +135,8 @@ class Tables:
             offset_sum along_track_mean along_track_rms cross_track_mean cross_track_rms
             inter_clip_per_second intra_clip_per_second forced_end_per_second
             search_cost_pose_mean search_cost_trajectory_mean clip_count seconds
-            speed_error_share switched_speed switch_every.
+            speed_error_share switched_speed switch_every path slowest_speed.
+            ``path`` names a trial that is no cell of the grid, whose speed and turn rate are means.
             ``speed_error_share`` is the error at each speed asked for over that speed, of two the larger.
         coverage: one row a one-second window of the clips: dataset clip frame speed turn_rate_deg
             | seconds forward_speed left_speed weight.
@@ -170,6 +177,8 @@ class Tables:
         graph: one row an edge of the transition graph: dataset scenario tracking from_clip to_clip count
             share inter_clip intra_clip forced_end discontinuity_mean.
             ``share`` is of all jumps out of ``from_clip``.
+        paths: one row a quarter of a second of a recorded trial that is no cell of the grid: dataset scenario
+            tracking path seconds planned_x planned_z walked_x walked_z.
 
     A mirrored copy of a clip is named "<clip> (mirrored)".
     """
@@ -186,6 +195,7 @@ class Tables:
     error_bins: Table
     error_fits: Table
     graph: Table
+    paths: Table = field(default_factory=lambda: Table({name: [] for name in PATH_COLUMNS}))
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,20 +2,23 @@
 
 Source: the paper's section 3.4 and its grid (section 4.2). Every trial first runs straight along the tangent
 of its circle, then turns for a while until it has settled, and only then is recorded. A scenario says what
-is asked for while it is: one speed throughout, or two in turn.
+is asked for while it is: one speed throughout, or two in turn. Other scenarios, which are no grid, are in
+:mod:`gmr.evaluation.scenarios`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Final, TypeAlias
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final, Self, TypeAlias
 
 __all__ = [
     "DEFAULT_SPEEDS",
     "DEFAULT_TURN_RATES_DEG",
+    "MOST_TRIALS",
     "PRESETS",
+    "RUN_UP",
     "SCENARIOS",
     "SWITCHED_SPEED",
     "SWITCH_EVERY",
@@ -48,6 +51,9 @@ SLOWEST: Final = 0.01
 FASTEST: Final = 100.0
 """Metres per second; a slower character would take days for a run-up of ten metres, none is faster."""
 
+RUN_UP: Final = 3.0
+"""Seconds straight ahead before a trial begins to do what it is about."""
+
 MOST_TRIALS: Final = 2_000
 """More would not fit into the memory of a small machine: with its figures a trial takes 0.7 MB."""
 
@@ -66,12 +72,14 @@ class Trial:
     """One simulated walk.
 
     Attributes:
-        scenario: the kind of trial, one of ``SCENARIOS``.
-        speed: the speed that names the trial, m/s.
-        turn_rate_deg: the turn rate that names the trial, degrees/s.
+        scenario: the kind of trial, one of ``SCENARIOS`` or the name of another scenario.
+        speed: the speed that names the trial, m/s; of a trial that is no cell of the grid the mean.
+        turn_rate_deg: the turn rate that names the trial, degrees/s; likewise.
         segments: the planned path, from the start; where one segment ends the next begins.
         recorded_from: seconds from the start after which the trial is recorded, to its end.
         switching: how the speed switches while it is recorded; None where it does not.
+        path: what tells the trial from the others of its scenario; "" in a cell of the grid, which speed and
+            turn rate tell.
     """
 
     scenario: str
@@ -80,11 +88,50 @@ class Trial:
     segments: tuple[Segment, ...]
     recorded_from: float
     switching: Switching | None = None
+    path: str = ""
+
+    @classmethod
+    def along(
+        cls, scenario: str, path: str, segments: Sequence[Segment], recorded_from: float = RUN_UP
+    ) -> Self:
+        """A trial that is no cell of a grid: its speed and turn rate are the means while it is recorded.
+
+        Args:
+            scenario: the name of the scenario.
+            path: what tells the trial from the others of the scenario.
+            segments: the planned path.
+            recorded_from: seconds from the start after which it is recorded.
+        """
+        parts = list(_recorded(segments, recorded_from))
+        seconds = math.fsum(part.seconds for part in parts) or math.nan
+        return cls(
+            scenario,
+            math.fsum(part.seconds * part.speed for part in parts) / seconds,
+            math.fsum(part.seconds * part.turn_rate_deg for part in parts) / seconds,
+            tuple(segments),
+            recorded_from,
+            path=path,
+        )
 
     @property
     def seconds(self) -> float:
         """Length of the whole trial."""
         return math.fsum(segment.seconds for segment in self.segments)
+
+    @property
+    def slowest(self) -> float:
+        """The lowest speed asked for while it is recorded, m/s; NaN where nothing is."""
+        return min((part.speed for part in _recorded(self.segments, self.recorded_from)), default=math.nan)
+
+
+def _recorded(segments: Sequence[Segment], start: float) -> Iterator[Segment]:
+    """What is left of the segments after ``start`` seconds."""
+    before = 0.0
+    for segment in segments:
+        after = before + segment.seconds
+        if after > start + 1e-9:
+            yield replace(segment, seconds=after - max(before, start))
+        before = after
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +152,7 @@ class Pacing:
 
 
 def _one_pace_for_all(speed: float, turn_rate_deg: float) -> Pacing:
-    return Pacing(run_up=3.0, settle=2.0, record=30.0)
+    return Pacing(run_up=RUN_UP, settle=2.0, record=30.0)
 
 
 def _as_the_authors_did(speed: float, turn_rate_deg: float) -> Pacing:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from gmr.evaluation.regions import Grid, Limits, judged
+from gmr.evaluation.scenarios.on_grid import on_grid
 from gmr.evaluation.words import count, duration, listing, number
 from gmr.table import Table
 
@@ -16,7 +17,8 @@ __all__ = ["scenario_sentences", "taken_up"]
 def scenario_sentences(
     trials: Table, coverage: Table, segments: Table | None, limits: Limits
 ) -> Iterator[str]:
-    """One sentence for every further scenario and tracking, and one more on how new speeds are taken up."""
+    """One sentence for every further scenario of the grid, and one more on how new speeds are taken up."""
+    trials = trials.take(on_grid(trials))
     own = judged(trials)
     usual = _away(trials.take(own))
     for chosen in _sets(trials):

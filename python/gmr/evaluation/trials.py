@@ -61,8 +61,10 @@ def trials_table(
         | {
             "clip_count": _clips_played(log, frames),
             "seconds": log.moving.sum(axis=1) / log.rate,
-            "speed_error_share": metrics.worst_share(metrics.path_speed(log), log.ref_speed, log.moving),
+            "speed_error_share": _speed_error_share(trials, log),
             **_switches(trials),
+            "path": np.array([trial.path for trial in trials], object),
+            "slowest_speed": np.array([trial.slowest for trial in trials]),
         }
     )
 
@@ -72,6 +74,17 @@ def _switches(trials: Sequence[Trial]) -> dict[str, NDArray[np.float64]]:
     switches = [(trial.switching.speed, trial.switching.every) if trial.switching else () for trial in trials]
     pairs = np.array([pair or (np.nan, np.nan) for pair in switches], np.float64)
     return {"switched_speed": pairs[:, 0], "switch_every": pairs[:, 1]}
+
+
+def _speed_error_share(trials: Sequence[Trial], log: Log) -> NDArray[np.float64]:
+    """At each speed asked for, the worst; on a path of many speeds, or of standing, in the mean of all."""
+    speed = metrics.path_speed(log)
+    on_grid = np.array([not trial.path for trial in trials])
+    share = metrics.worst_share(speed, log.ref_speed, log.moving & on_grid[:, None])
+    asked = np.array([trial.speed for trial in trials])
+    error = metrics.static_error(speed, log.ref_speed, log.moving)
+    mean = np.divide(error, asked, out=np.full(len(asked), np.nan), where=asked > 0)
+    return np.asarray(np.where(on_grid, share, mean))
 
 
 def _accuracy(log: Log) -> dict[str, NDArray[np.float64]]:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from gmr.evaluation.blending_sentences import blending_sentences, lead_in_sentences
 from gmr.evaluation.clip_sentences import clip_sentences
 from gmr.evaluation.failure_sentences import capture_sentences, failure_sentences
+from gmr.evaluation.path_sentences import path_sentences
 from gmr.evaluation.regions import Grid, Limits, failures, held_rectangle
 from gmr.evaluation.result import Verdict
 from gmr.evaluation.scenario_sentences import scenario_sentences
@@ -64,6 +65,7 @@ def verdict(
             *_straight_sentences(grid),
             *failure_sentences(grid, regions),
             *scenario_sentences(trials, coverage, segments, grid.limits),
+            *path_sentences(trials, coverage, grid.limits),
             *_side_sentences(coverage, mirrored),
             *clip_sentences(clips, usage),
             *(blending_sentences(poses) if poses is not None else ()),

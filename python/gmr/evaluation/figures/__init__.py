@@ -16,12 +16,14 @@ from gmr.evaluation.figures.error_distributions import error_distributions
 from gmr.evaluation.figures.frame_usage import frame_usage
 from gmr.evaluation.figures.holds_map import holds_map
 from gmr.evaluation.figures.measures import MEASURES
+from gmr.evaluation.figures.planned_paths import planned_paths
 from gmr.evaluation.figures.pose_distance import pose_distance
 from gmr.evaluation.figures.speed_switches import speed_switches
 from gmr.evaluation.figures.transition_kinds import transition_kinds
 from gmr.evaluation.figures.transition_matrix import transition_matrix
 from gmr.evaluation.figures.trial_maps import trial_map, trial_sets
 from gmr.evaluation.figures.turn_symmetry import turn_symmetry
+from gmr.evaluation.path_sentences import path_sets
 from gmr.evaluation.result import Evaluation
 from gmr.pages.figure import Figure
 from gmr.replacing import replacing
@@ -42,6 +44,8 @@ def figures(evaluation: Evaluation) -> Iterator[Figure]:
     yield from speed_switches(evaluation)
     yield cost_over_time(evaluation)
     yield from error_distributions(evaluation)
+    for scenario, tracking in path_sets(evaluation.measured.trials):
+        yield planned_paths(evaluation, scenario, tracking)
     yield clip_usage(evaluation)
     yield frame_usage(evaluation)
     yield transition_kinds(evaluation)

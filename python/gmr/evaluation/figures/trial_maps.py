@@ -9,6 +9,7 @@ import numpy as np
 
 from gmr.evaluation.figures.measures import Measure
 from gmr.evaluation.result import Evaluation
+from gmr.evaluation.scenarios.on_grid import on_grid
 from gmr.pages.figure import Figure
 from gmr.table import Table
 
@@ -48,8 +49,9 @@ def trial_map(evaluation: Evaluation, measure: Measure, scenario: str, tracking:
 
 
 def trial_sets(evaluation: Evaluation) -> list[tuple[str, str]]:
-    """The pairs of scenario and tracking in the trials, in their order."""
+    """The pairs of scenario and tracking in the trials of the grid, in their order."""
     trials = evaluation.measured.trials
+    trials = trials.take(on_grid(trials))
     return list(dict.fromkeys(zip(trials["scenario"].tolist(), trials["tracking"].tolist(), strict=True)))
 
 

@@ -8,9 +8,10 @@ from pathlib import PurePosixPath
 from typing import Final
 
 from gmr.evaluation.clip_sentences import MIRRORED
+from gmr.evaluation.scenario import Trial
 from gmr.evaluation.words import turning
 
-__all__ = ["asked", "base_name", "metres", "short_names"]
+__all__ = ["asked", "asked_of", "base_name", "metres", "short_names"]
 
 _LONGEST_LABEL: Final = 32
 _AGAIN: Final = "\N{NO-BREAK SPACE}#"
@@ -24,6 +25,11 @@ def metres(value: float) -> str:
 def asked(speed: float, turn_rate_deg: float) -> str:
     """What a trial asks for: "3 m/s turning left by 25 degrees/s"."""
     return f"{speed:g} m/s {turning(turn_rate_deg, turn_rate_deg)}"
+
+
+def asked_of(trial: Trial) -> str:
+    """What a trial asks for; of one that is no cell of the grid, which it is: "path 3 of splines"."""
+    return f"{trial.path} of {trial.scenario}" if trial.path else asked(trial.speed, trial.turn_rate_deg)
 
 
 def base_name(clip: str) -> str:

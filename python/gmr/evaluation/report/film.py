@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.evaluation.figures.trial_maps import set_label
-from gmr.evaluation.figures.wording import asked, short_names
+from gmr.evaluation.figures.wording import asked_of, short_names
 from gmr.evaluation.replays import PlayedTrial, Replays
 from gmr.evaluation.report.replay import drawn_parents, head_of, on_a_bone, replay_sentence, sides
 
@@ -102,7 +102,7 @@ def _told(played: PlayedTrial, index: int, rate: float) -> dict[str, Any]:
     recorded = min(round(trial.recorded_from * rate), len(played.row) - 1)
     return {
         "index": index,
-        "label": asked(trial.speed, trial.turn_rate_deg),
+        "label": asked_of(trial),
         "away": round(float(played.offset[recorded:].mean()), 3),
         "sentence": replay_sentence(played),
         "start": [float(played.x[0]), float(played.z[0]), float(played.heading[0])],

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.figures.wording import asked, metres
+from gmr.evaluation.figures.wording import asked_of, metres
 from gmr.evaluation.replays import PlayedTrial, Replays
 
 __all__ = ["drawn_parents", "head_of", "on_a_bone", "replay_sentence", "sides"]
@@ -28,7 +28,7 @@ def replay_sentence(played: PlayedTrial) -> str:
     seconds = played.trial.seconds * worst / max(len(offset) - 1, 1)
     jumps = int(played.jumped.sum())
     return (
-        f"Asked for {asked(played.trial.speed, played.trial.turn_rate_deg)}, the character is farthest from "
+        f"Asked for {asked_of(played.trial)}, the character is farthest from "
         f"its plan, {metres(float(offset[worst]))}, after {seconds:.0f} of {played.trial.seconds:.0f} "
         f"seconds. It jumps {jumps:,} {'time' if jumps == 1 else 'times'}."
     )

@@ -11,7 +11,7 @@ from gmr.evaluation.figures import Figure
 from gmr.evaluation.figures.clip_usage import never_played, recordings
 from gmr.evaluation.figures.measures import MEASURES
 from gmr.evaluation.figures.transition_matrix import flows
-from gmr.evaluation.figures.trial_maps import set_label
+from gmr.evaluation.figures.trial_maps import set_label, trial_sets
 from gmr.evaluation.replay import worst_trial
 from gmr.evaluation.report.method import SOURCE, terms
 from gmr.evaluation.report.replay import replay_sentence
@@ -42,6 +42,7 @@ def sections(evaluation: Evaluation, figures: Sequence[Figure], added: Sequence[
     """The body of the page; what is ``added`` stands before the replay."""
     drawn = {figure.name: figure for figure in figures}
     maps = [figure for figure in figures if figure.name.startswith("trial_map_")]
+    paths = [figure for figure in figures if figure.name.startswith("planned_paths")]
     parts = [
         _verdict(evaluation, added),
         _failed(evaluation.failed),
@@ -60,7 +61,7 @@ def sections(evaluation: Evaluation, figures: Sequence[Figure], added: Sequence[
             "How well it follows a path",
             "In every trial a character driven by motion matching is sent along a circle, or straight ahead, "
             "at one speed and one turn rate. A cell is a trial; what stands after ± is its spread over time.",
-            _maps(maps, evaluation),
+            _maps(maps, evaluation) + "".join(map(_figure, paths)),
         ),
         section(
             "course",
@@ -195,8 +196,7 @@ def _scatter(figure: Figure, evaluation: Evaluation) -> str:
 
 def _maps(maps: Sequence[Figure], evaluation: Evaluation) -> str:
     """All maps of the trials, of which the controls show one."""
-    trials = evaluation.measured.trials
-    sets = list(dict.fromkeys(zip(trials["scenario"].tolist(), trials["tracking"].tolist(), strict=True)))
+    sets = trial_sets(evaluation)
     views = {"holds": "Verdict", **{measure.column: measure.label for measure in MEASURES}}
     buttons = "".join(
         element(
