@@ -15,7 +15,7 @@ from gmr.actionlets.actions.anatomy import Anatomy
 from gmr.actionlets.actions.parts import Courses
 from gmr.actionlets.actions.performance import Performance
 from gmr.actionlets.actions.plan import Plan, performed
-from gmr.actionlets.actions.similarity import SPEED, Pace, leg_ratio, pace
+from gmr.actionlets.actions.similarity import SPEED, Pace, leg_ratio, pace, stepping
 from gmr.actionlets.actions.timeline import Profile, Timeline, chosen_parameters
 from gmr.actionlets.actions.units import MOST_SECONDS, SIDES, ActionUnit, Parameter
 from gmr.actionlets.actions.unrolling import Unrolled
@@ -186,8 +186,10 @@ class SingleAction(Action):
             seconds=lasts,
             knots=unrolled.knots(),
             contacts=unrolled.contacts(),
-            speed=_profile(timeline, SPEED, 1 / going.speed, lasts),
-            turn_rate=_profile(timeline, "turn_rate", float(np.radians(1.0)), lasts),
+            speed=_profile(timeline, timeline.asked, lasts),
+            turn_rate=_profile(
+                timeline, np.radians(timeline.parameters.get("turn_rate", np.zeros(1))), lasts
+            ),
             travel=unit.travel,
             labels=unrolled.labels(lasts),
             phase=float(np.interp(lasts, timeline.times, timeline.phase)) if unit.cyclic else None,
@@ -227,7 +229,7 @@ class SingleAction(Action):
         values = {name: float(np.ravel(profile)[-1]) for name, profile in chosen.items()}
         values |= dict.fromkeys(self.unit.derived, 0.0)
         if SPEED in values:
-            values[SPEED] *= self.pace(size).speed
+            values[SPEED] = self.pace(size).speed * float(stepping(values))
         return values
 
     def _seconds(
@@ -250,9 +252,8 @@ def _duration(unit: ActionUnit, chosen: Mapping[str, Profile], going: Pace) -> f
     return float(np.interp(1.0, longest.phase, longest.times))
 
 
-def _profile(timeline: Timeline, name: str, factor: float, seconds: float) -> NDArray[np.float64]:
-    """(n, 2) seconds and a parameter of that name, from 0 to the end; 0 where the action has none."""
-    values = timeline.parameters.get(name, np.zeros(1)) * factor
+def _profile(timeline: Timeline, values: NDArray[np.float64], seconds: float) -> NDArray[np.float64]:
+    """(n, 2) seconds and values of a timeline, from 0 to the end."""
     if np.ptp(values) == 0:
         return np.array([[0.0, values[0]], [seconds, values[0]]])
     inside = (timeline.times > 0) & (timeline.times < seconds)

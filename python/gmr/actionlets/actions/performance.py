@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from gmr.actionlets.actions.timeline import Profile
 from gmr.actionlets.score import Score
+from gmr.actionlets.travel.plan import Travel
 
 __all__ = ["Performance"]
 
@@ -25,7 +26,8 @@ class Performance:
             apart from each other; the first may begin before 0 and the last end after the score.
         speed: (n, 2) seconds and metres a second along the path, straight between the points.
         turn_rate: (n, 2) seconds and radians a second, positive to the left.
-        travel: "path": speed and turn rate are asked; "feet": the planted feet carry the root.
+        travel: "path": speed and turn rate are asked; "feet": the planted feet carry the root;
+            or (seconds, one of these) from then on.
         phases: (label, begin, end) in seconds, by their beginning.
         parameters: what was chosen.
         seed, variation: what it differs by from the action as written.
@@ -36,7 +38,7 @@ class Performance:
     contacts: Mapping[str, NDArray[np.float64]]
     speed: NDArray[np.float64]
     turn_rate: NDArray[np.float64]
-    travel: str
+    travel: Travel
     phases: tuple[tuple[str, float, float], ...]
     parameters: Mapping[str, Profile]
     seed: int = 0

@@ -10,15 +10,22 @@ mammals", J. Zool. 201 (1983) 135; for people A. L. Hof, "Scaling gait data to b
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from functools import cache
 from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from gmr.actionlets.actions.units import ActionUnit
 from gmr.actionlets.body import Body
 
-__all__ = ["SPEED", "WRITTEN", "Pace", "leg_ratio", "pace"]
+__all__ = ["SPEED", "WRITTEN", "Pace", "leg_ratio", "pace", "stepping"]
 
 SPEED = "speed"
+
+_ROUND = 0.1
+"""Metres from the body's middle to its feet, which go round it when it turns on the spot."""
 
 
 class Pace(NamedTuple):
@@ -43,6 +50,13 @@ def pace(unit: ActionUnit, size: float) -> Pace:
     """
     period = math.sqrt(size) if unit.cyclic and SPEED in unit.span.parameters else 1.0
     return Pace(period, period / size)
+
+
+def stepping(parameters: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
+    """Metres a second with which feet step that go along a path and round the body: a body that turns on the
+    spot does not leave them where they are."""
+    turn_rate = np.radians(parameters.get("turn_rate", 0.0))
+    return np.asarray(np.hypot(parameters[SPEED], _ROUND * turn_rate), np.float64)
 
 
 def leg_ratio(body: Body | None) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.actionlets.actions.many_values import Values, within
-from gmr.actionlets.actions.similarity import SPEED, WRITTEN, Pace
+from gmr.actionlets.actions.similarity import SPEED, WRITTEN, Pace, stepping
 from gmr.actionlets.actions.tables import nearest
 from gmr.actionlets.actions.units import LEAN, ActionUnit, Parameter
 from gmr.actionlets.actions.values import monotone
@@ -60,7 +60,8 @@ class Timeline:
     Args:
         times: (n,) seconds, rising; 0 is where the performance begins.
         phase: (n,) cycles.
-        parameters: by name, (n,); the speed as it is looked up, see :class:`Pace`.
+        parameters: by name, (n,); the speed as it is looked up, see :class:`Pace` and :func:`stepping`.
+        asked: (n,) speed along the path, metres a second; 0 for an action that has none.
         is_cyclic: whether there are cycles beside the first.
         steady: the parameters, where none of them changes; else None.
     """
@@ -68,6 +69,7 @@ class Timeline:
     times: Floats
     phase: Floats
     parameters: Mapping[str, Floats]
+    asked: Floats
     is_cyclic: bool
     steady: Mapping[str, float] | None
 
@@ -84,8 +86,9 @@ class Timeline:
         """
         times = _grid(seconds, 2.0 * pace.period * action.span.highest if action.cyclic else 0.0)
         parameters = _parameters_at(times, action, chosen, seconds)
+        asked = parameters.get(SPEED, np.zeros(len(times)))
         if SPEED in parameters:
-            parameters[SPEED] = parameters[SPEED] * pace.speed
+            parameters[SPEED] = pace.speed * stepping(parameters)
         rates = 1 / (pace.period * np.broadcast_to(action.span.at(parameters), times.shape))
         between = np.diff(times) * (rates[1:] + rates[:-1]) / 2
         phase = np.concatenate([[0.0], np.cumsum(between)])
@@ -93,7 +96,7 @@ class Timeline:
         phase = phase - np.interp(0.0, times, phase) + begins
         changes = any((values != values[0]).any() for values in parameters.values())
         steady = None if changes else {name: float(values[0]) for name, values in parameters.items()}
-        return cls(times, phase, parameters, action.cyclic, steady)
+        return cls(times, phase, parameters, asked, action.cyclic, steady)
 
     def moments(self, phases: Values, shift: Floats) -> Moments:
         """When each of some phases, put off by ``shift`` (N,), is reached in every cycle."""

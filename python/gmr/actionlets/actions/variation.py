@@ -35,6 +35,8 @@ _OWN: Final = 0.25
 """Share by which the sides differ, of what both change."""
 _STRIDE: Final = 0.3
 """Share of its change that hip flexion takes where a speed is asked, for a stride carries it."""
+_CADENCE: Final = 0.4
+"""Share of its change that the tempo takes there: at one speed a slower step is a longer one."""
 _SHARE: Final = 0.45
 """Of the way to its neighbour that an extreme moves at most."""
 
@@ -94,6 +96,7 @@ class Variable:
         neighbour: (E,) of the two extremes beside it the one that is nearer, but not as high.
         way: (E,) how far it is there.
         free: (E,) share of its change that each extreme takes.
+        cadence: share of its change that the tempo takes.
         partner: (E,) the extreme of the left limb from which it takes most of its changes; itself for others.
         warped: (N,) phases at which the times of the cycle's extremes are told.
         phases: (S,) the action's, within the cycle.
@@ -106,6 +109,7 @@ class Variable:
     neighbour: Ints
     way: Floats
     free: Floats
+    cadence: float
     partner: Ints
     warped: Floats
     phases: Floats
@@ -140,6 +144,7 @@ class Variable:
             neighbour=neighbour,
             way=angles[neighbour] - angles,
             free=np.concatenate([np.full(len(one), free[dof]) for dof, one in rows.items()]),
+            cadence=_CADENCE if strides else 1.0,
             partner=_partners(written, neighbour),
             warped=np.unique([*inside, 0.0, 1.0]),
             phases=np.where((phases >= 0) & (phases <= 1), phases, phases % 1.0),
@@ -163,8 +168,8 @@ class Variable:
         towards = np.divide(moved, self.way, out=np.zeros(len(moved)), where=np.abs(self.way) > 1e-9)
         towards = np.clip(towards, -_SHARE, _SHARE)
         return Variation(
-            mutant.tempo,
-            np.interp(self.phases, self.warped, mutant.pace.warped(self.warped) - self.warped),
+            mutant.tempo**self.cadence,
+            self.cadence * np.interp(self.phases, self.warped, mutant.pace.warped(self.warped) - self.warped),
             self.neighbour,
             self.free * ((1 - _OWN) * towards[self.partner] + _OWN * towards),
             self.free * ((1 - _OWN) * tilt[self.partner] + _OWN * tilt),

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gmr.actionlets.travel.by_feet import carried_by_feet
+from gmr.actionlets.travel.by_turns import carried_by_turns
 from gmr.actionlets.travel.flight import Flights, falling, flights, taken_up
 from gmr.actionlets.travel.footing import Footing, Standing, footing, with_footprints
 from gmr.actionlets.travel.height import held_up, kept_bend, lowered, passing, room
@@ -19,7 +20,7 @@ from gmr.actionlets.travel.leg import BENT, Placed, place_foot
 from gmr.actionlets.travel.legs import legs_of, pelvis_shift, pelvis_turn, sole_of
 from gmr.actionlets.travel.mass import legs_moment, trunk_moment
 from gmr.actionlets.travel.path import led, level
-from gmr.actionlets.travel.plan import Planned, asked, stances
+from gmr.actionlets.travel.plan import Planned, asked, kinds, stances
 from gmr.actionlets.travel.report import Report, measured
 from gmr.actionlets.travel.stepping import stepped
 from gmr.actionlets.travel.turns import turned
@@ -87,7 +88,7 @@ def carried(
     Args:
         body: D degrees of freedom.
         angles: (F, D) planned angles in radians, translations of the root in metres.
-        plan: contacts, speed, turn rate and ``"path"`` or ``"feet"``.
+        plan: contacts, speed, turn rate and ``"path"`` or ``"feet"``, or which of them from when on.
         fps: frames a second.
         start: seconds at the first frame.
 
@@ -100,11 +101,16 @@ def carried(
     path = led(asked(plan.speed, times, "speed"), asked(plan.turn_rate, times, "turn_rate"), fps)
     pelvis, shift = pelvis_turn(body, values), pelvis_shift(body, values)
     both = _footings(body, values, pelvis, plan, fps, start)
-    if plan.travel == "feet":
-        ground, heading, both = carried_by_feet(both, path, _balance(body, values, both), fps)
-    else:
-        place, heading = path
-        ground = place + level(shift[:, ::2], heading)
+    how = kinds(plan.travel)
+    place, heading = path
+    ground = place + level(shift[:, ::2], heading)
+    if any(kind == "feet" for _, kind in how):
+        *by_feet, standing = carried_by_feet(both, path, _balance(body, values, both), fps)
+        if len(how) > 1:
+            ground, heading = carried_by_turns(how, times, (ground, heading), (by_feet[0], by_feet[1]))
+        else:
+            (ground, heading), both = by_feet, standing
+    if len(how) > 1 or how[0][1] == "path":
         both = [with_footprints(one, ground, heading) for one in both]
     root = _upright([one.standing(heading) for one in both], ground, heading, fps)
     stood = [one.with_heels(root, heading).standing(heading) for one in both]
@@ -129,8 +135,7 @@ def _checked(body: Body, angles: ArrayLike, plan: Planned, fps: float) -> Floats
         raise ActionletError(
             f"{body.names[column]} is {values[frame, column]} in frame {frame}; give a number"
         )
-    if plan.travel not in ("path", "feet"):
-        raise ActionletError(f"travel is {plan.travel!r}; a body travels by 'path' or by 'feet'")
+    kinds(plan.travel)
     if not (np.isfinite(fps) and fps > 0):
         raise ActionletError(f"fps is {fps}; give the frames in a second, above 0")
     return values
@@ -230,14 +235,17 @@ def _settled(
     frames = air.frames
     trunk = trunk_moment(body, values[frames])
     centre = _in_world(trunk + legs_moment(body, values[frames]), heading[frames])
-    for _ in range(_ROUNDS):
+    flying = np.zeros(len(root), bool)
+    flying[frames] = True
+    for number in range(_ROUNDS):
         moved = taken_up(root, air, centre, fps)
         over = np.maximum(moved[:, 1] - _highest(both, moved, heading, fps), 0)
         if over.any():
             root = root.copy()
             root[:, 1] = lowered(root[:, 1], root[:, 1] - over, fps)
             moved = taken_up(root, air, centre, fps)
-        angles = stepped(values, pelvis, both, moved, heading, fps)
+        wanted = flying if number + 1 < _ROUNDS else None
+        angles = stepped(values, pelvis, both, moved, heading, fps, wanted)
         centre = _in_world(trunk + legs_moment(body, angles[frames]), heading[frames])
     return angles, falling(moved, air, centre, fps)
 

@@ -12,9 +12,10 @@ from gmr.actionlets.travel.heel_rise import risen
 from gmr.actionlets.travel.leg import Law, Leg, Placed, law
 from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.plan import Stance
+from gmr.actionlets.travel.slopes import spread
 from gmr.actionlets.travel.sole import Sole, pitch_of, yaw_of
 from gmr.actionlets.travel.swinging import Air, in_air
-from gmr.actionlets.travel.turns import about_y, pitched, turned
+from gmr.actionlets.travel.turns import about_y, about_z, pitched, turned
 from gmr.editing.easing import smooth_step
 
 __all__ = ["Footing", "Standing", "footing", "with_footprints"]
@@ -64,6 +65,13 @@ class Footing:
         counts = [stance.last - stance.first + 1 for stance in self.stances]
         return np.repeat(values, counts, axis=0)
 
+    def edges(self) -> NDArray[np.intp]:
+        """Which of the frames on the ground are among the first or last three of their stances."""
+        counts = np.array([stance.last - stance.first + 1 for stance in self.stances], np.intp)
+        since = spread(counts)
+        until = np.repeat(counts, counts) - 1 - since
+        return np.flatnonzero(np.minimum(since, until) < 3)
+
     def rolled(self) -> tuple[Floats, Floats]:
         """(n, 2) x and z from the footprint and (n,) height of the ankle of a foot that rolls, before its
         yaw."""
@@ -73,20 +81,49 @@ class Footing:
 
     def standing(self, heading: Floats) -> Standing:
         """Where the leg ends in its stances, under (F,) headings."""
-        on, facing = self.frames, heading[self.frames]
-        point, ground = self.sole.contact(self.pitch)
-        touch = self.place + level(ground, self.yaw)
+        on = self.frames
         hip, nominal = self.hip[on], self.nominal
         if self.leg.rigid:
-            end = np.stack([touch[:, 0], np.zeros(len(touch)), touch[:, 1]], axis=1)
+            point, _ = self.sole.contact(self.pitch)
+            end = self.touched(self.pitch)
             length = _length(nominal.ankle[on] + turned(nominal.foot[on], point) - hip)
             return Standing(self, end, nominal.foot[on], point, law(self.leg, point), length)
-        yaw = self.yaw - facing
-        foot = about_y(yaw + _pivot(yaw, self.pitch)) @ pitched(self.pitch)
-        arm = turned(foot, point)
-        side = level(arm[:, ::2], facing)
-        end = np.stack([touch[:, 0] - side[:, 0], -arm[:, 1], touch[:, 1] - side[:, 1]], axis=1)
+        end, foot = self.planted(heading[on], self.pitch)
         return Standing(self, end, foot, np.zeros_like(end), self.leg.law, _length(nominal.ankle[on] - hip))
+
+    def touched(self, pitch: Floats, rows: NDArray[np.intp] | slice = slice(None)) -> Floats:
+        """(m, 3) where the sole touches the ground in the world, in some of the frames on the ground."""
+        _, ground = self.sole.contact(pitch)
+        touch = self.place[rows] + level(ground, self.yaw[rows])
+        return np.stack([touch[:, 0], np.zeros(len(touch)), touch[:, 1]], axis=1)
+
+    def planted(
+        self,
+        facing: Floats,
+        pitch: Floats,
+        roll: Floats | None = None,
+        rows: NDArray[np.intp] | slice = slice(None),
+    ) -> tuple[Floats, Floats]:
+        """Where a foot has its ankle that stands on its footprint.
+
+        Args:
+            facing: (m,) heading.
+            pitch: (m,) radians that the toes point up.
+            roll: (m,) radians about the line from heel to toes; None: 0.
+            rows: which of the frames on the ground these are.
+
+        Returns:
+            (m, 3) the ankle in the world and (m, 3, 3) the turn of the foot in the frame of the heading.
+        """
+        point, ground = self.sole.contact(pitch)
+        yaw = self.yaw[rows] - facing
+        foot = about_y(yaw + _pivot(yaw, pitch)) @ pitched(pitch)
+        if roll is not None:
+            foot = foot @ about_z(roll)
+        arm = turned(foot, point)
+        end = -arm
+        end[:, ::2] = self.place[rows] + level(ground, self.yaw[rows]) - level(arm[:, ::2], facing)
+        return end, foot
 
     def loads(self, fps: float) -> Floats:
         """(n,) share of the body that the foot carries: smoothly taken over and handed on.

@@ -25,7 +25,9 @@ __all__ = [
     "leg_angles",
     "leg_reach",
     "place_foot",
+    "placed",
     "rigid_leg_angles",
+    "toe_leg_angles",
     "unlocked",
 ]
 
@@ -70,6 +72,8 @@ class Leg:
     ankle_columns: tuple[int, int, int] | None
     """Columns of ankle flexion, inversion and rotation; None for a rigid ankle."""
     ankle_signs: Floats
+    limits: tuple[Floats, Floats]
+    """(K,) lowest and highest angles of ``columns``."""
 
     @property
     def rigid(self) -> bool:
@@ -122,13 +126,18 @@ class Placed:
 
 def place_foot(leg: Leg, angles: Floats) -> Placed:
     """Where (F, D) angles put the foot, in the frame of the pelvis."""
-    flexion, abduction, rotation = (angles[:, leg.hip_columns] * leg.hip_signs).T
+    return placed(leg, angles[:, leg.columns])
+
+
+def placed(leg: Leg, angles: Floats) -> Placed:
+    """Where (F, K) angles of ``leg.columns`` put the foot, in the frame of the pelvis."""
+    flexion, abduction, rotation = (angles[:, :3] * leg.hip_signs).T
     hip = product(flexion, abduction, rotation)
-    lower = hip @ about_x(leg.knee_sign * angles[:, leg.knee_column])
+    lower = hip @ about_x(leg.knee_sign * angles[:, 3])
     ankle = leg.hip + turned(hip, leg.thigh) + turned(lower, leg.shank)
     if leg.ankle_columns is None:
         return Placed(ankle, lower)
-    x, z, y = (angles[:, leg.ankle_columns] * leg.ankle_signs).T
+    x, z, y = (angles[:, 4:] * leg.ankle_signs).T
     return Placed(ankle, lower @ product(x, z, y))
 
 
@@ -158,6 +167,29 @@ def leg_angles(leg: Leg, ankle: Floats, rotation: Floats, foot: Floats | None) -
     lower = product(*hip) @ about_x(leg.knee_sign * hinge)
     ankles = np.stack(angles_of(lower.swapaxes(1, 2) @ foot), axis=1) * leg.ankle_signs
     return np.concatenate([found, ankles], axis=1)
+
+
+def toe_leg_angles(leg: Leg, touch: Floats, point: Floats, rotation: Floats, ankle: Floats) -> Floats:
+    """Angles that bring a point of the foot to a place, with chosen angles of the ankle.
+
+    Shank and foot are one bone then, so the knee follows from the distance of the hip and that point.
+
+    Args:
+        leg: the leg.
+        touch: (n, 3) where the point is wanted, in the frame of the pelvis.
+        point: (n, 3) the point from the ankle, in the frame of the foot.
+        rotation: (n,) the hip's rotation in radians.
+        ankle: (n, 3) ankle flexion, inversion and rotation in radians.
+
+    Returns:
+        (n, 7) as :func:`leg_angles`.
+    """
+    x, z, y = (ankle * leg.ankle_signs).T
+    tip = turned(product(x, z, y), point)
+    end = law(leg, tip)
+    way = touch - leg.hip
+    hinge = leg.knee_sign * end.straight + _bend(end, np.sqrt((way * way).sum(axis=1)))
+    return np.concatenate([_hip_angles(leg, way, hinge, rotation, tip)[0], ankle], axis=1)
 
 
 def rigid_leg_angles(leg: Leg, touch: Floats, tip: Floats, planned: Floats) -> Floats:

@@ -68,6 +68,7 @@ def _leg(body: Body, side: str) -> Leg:
         float(bends),
         (ankle[0], ankle[1], ankle[2]) if has_ankle else None,
         ankle_signs,
+        (read_only(body.low[[*hip, knee, *ankle]]), read_only(body.high[[*hip, knee, *ankle]])),
     )
 
 

@@ -3,20 +3,24 @@ turns."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from itertools import pairwise
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gmr.errors import ActionletError
 
-__all__ = ["SIDES", "Plan", "Planned", "Stance", "asked", "stances"]
+__all__ = ["SIDES", "Plan", "Planned", "Stance", "Travel", "asked", "kinds", "stances"]
 
 Floats = NDArray[np.float64]
 
 SIDES = ("left", "right")
+
+Travel: TypeAlias = str | Sequence[tuple[float, str]]
+""" "path" or "feet", or (seconds, one of them) from then on, in time."""
 
 _FRAME = 1e-6
 """Part of a frame by which a contact may miss a frame and still hold it."""
@@ -38,8 +42,8 @@ class Planned(Protocol):
         """(n, 2) time in seconds, radians a second to the left."""
 
     @property
-    def travel(self) -> str:
-        """ "path" or "feet"."""
+    def travel(self) -> Travel:
+        """ "path" or "feet", or which of them from when on."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,13 +54,14 @@ class Plan:
         contacts: (n, 2) seconds by "left" and "right".
         speed: (n, 2) time and metres a second; linear between the times, level before and after.
         turn_rate: (n, 2) time and radians a second to the left, in the same way.
-        travel: "path": the root follows speed and turn rate; "feet": the planted feet carry it.
+        travel: "path": the root follows speed and turn rate; "feet": the planted feet carry it;
+            or (seconds, one of these) from then on, in time.
     """
 
     contacts: Mapping[str, NDArray[Any]]
     speed: NDArray[Any]
     turn_rate: NDArray[Any]
-    travel: str = "path"
+    travel: Travel = "path"
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +99,23 @@ def stances(plan: Planned, frame_count: int, fps: float, start: float) -> tuple[
         for stance in _of_foot(leg, side, plan.contacts.get(side, ()), frame_count, fps, start)
     ]
     return tuple(sorted(found, key=lambda stance: (stance.first, stance.leg)))
+
+
+def kinds(travel: Travel) -> tuple[tuple[float, str], ...]:
+    """(seconds, "path" or "feet") in time, from a kind of travel or from such rows.
+
+    Raises:
+        ActionletError: another kind, no row, or rows that are not in time.
+    """
+    rows = ((0.0, travel),) if isinstance(travel, str) else tuple(travel)
+    for _, kind in rows:
+        if kind not in ("path", "feet"):
+            raise ActionletError(f"travel is {kind!r}; a body travels by 'path' or by 'feet'")
+    if not rows or not all(one < other for (one, _), (other, _) in pairwise(rows)):
+        raise ActionletError(
+            f"travel is {travel!r}; give (seconds, 'path' or 'feet') rows in time, one at least"
+        )
+    return rows
 
 
 def asked(profile: ArrayLike, times: Floats, what: str) -> Floats:

@@ -99,8 +99,13 @@ class Sole:
 
 
 def pitch_of(foot: Floats) -> Floats:
-    """(F,) radians that the toes point up, of (F, 3, 3) feet; beyond a quarter where the sole looks up."""
-    level = np.copysign(np.hypot(foot[:, 0, 2], foot[:, 2, 2]), foot[:, 1, 1])
+    """(F,) radians that the toes point up, of (F, 3, 3) feet; beyond a quarter where the sole looks up.
+
+    Where the toes point ahead is told by the foot's yaw, so that a foot that is also rolled passes upright
+    without a jump.
+    """
+    yaw = yaw_of(foot)
+    level = foot[:, 0, 2] * np.sin(yaw) + foot[:, 2, 2] * np.cos(yaw)
     return np.asarray(np.arctan2(foot[:, 1, 2], level), np.float64)
 
 

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.actionlets.travel.footing import Footing, Standing
-from gmr.actionlets.travel.leg import leg_angles, place_foot, rigid_leg_angles, unlocked
+from gmr.actionlets.travel.footing import Standing
+from gmr.actionlets.travel.keeping import kept_in_range
+from gmr.actionlets.travel.leg import Leg, leg_angles, placed, rigid_leg_angles, unlocked
+from gmr.actionlets.travel.limits import squashed, unsquashed
 from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.sole import yaw_of
 from gmr.actionlets.travel.swinging import cleared, led_over
@@ -17,18 +19,28 @@ from gmr.actionlets.travel.turns import turned, turned_back
 __all__ = ["stepped"]
 
 Floats = NDArray[np.float64]
+Rows = NDArray[np.intp]
+
+_HIP_ROTATION, _KNEE = 2, 3
 
 _LEG_TURNS = 0.8
 """Share of a foot's correction in yaw that the hip gives; the ankle gives the rest."""
 
 
 def stepped(
-    planned: Floats, pelvis: Floats, both: Sequence[Standing], root: Floats, heading: Floats, fps: float
+    planned: Floats,
+    pelvis: Floats,
+    both: Sequence[Standing],
+    root: Floats,
+    heading: Floats,
+    fps: float,
+    wanted: NDArray[np.bool_] | None = None,
 ) -> Floats:
-    """(F, D) the planned angles with legs that keep their feet where they belong.
+    """(F, D) the planned angles with legs that keep their feet where they belong and their ranges of motion.
 
     On the ground the legs reach for their footprints. In the air the angles are corrected by what leads from
-    the corrections before to those after, and by what keeps the foot over the ground.
+    the corrections before to those after, and by what keeps the foot over the ground. Both corrections are
+    led over before angles are squashed into their ranges, so that angles and their speeds are continuous.
 
     Args:
         planned: (F, D) radians.
@@ -37,53 +49,73 @@ def stepped(
         root: (F, 3) the pelvis in the world.
         heading: (F,) radians.
         fps: frames a second.
+        wanted: (F,) the frames that are wanted; None: all. In others the legs are anyhow.
     """
     found = planned.copy()
     for stood in both:
         one = stood.one
-        columns = one.leg.columns
+        columns, limits = one.leg.columns, one.leg.limits
         plan = planned[:, columns]
         offsets = np.zeros_like(plan)
-        on = one.frames
+        rows = np.arange(len(one.frames)) if wanted is None else one.edges()
+        on = one.frames[rows]
         if len(on):
-            offsets[on] = _on_ground(stood, plan[on], pelvis[on], root[on], heading[on]) - plan[on]
-        led_over(offsets, one.air, fps)
-        found[:, columns] = plan + offsets
+            legs = _on_ground(stood, rows, plan[on], pelvis[on], root[on], heading[on])
+            if one.leg.rigid:
+                legs = squashed(legs, *limits)
+            else:
+                legs = kept_in_range(one, rows, legs, pelvis[on], root[on], heading[on])
+            found[on[:, None], columns] = legs
+            offsets[on] = unsquashed(legs, *limits) - plan[on]
         if len(one.air.frames):
-            _swing_clear(found, one, pelvis, root)
+            led_over(offsets, one.air, fps)
+            some = np.ones(len(one.air.frames), bool) if wanted is None else wanted[one.air.frames]
+            air = one.air.frames[some]
+            free = plan[air] + offsets[air]
+            found[air[:, None], columns] = _swung(one.leg, free, one.air.rise[some], pelvis[air], root[air])
     return found
 
 
-def _swing_clear(found: Floats, one: Footing, pelvis: Floats, root: Floats) -> None:
-    """Bends the legs in the air so that no foot touches the ground and no knee locks."""
-    leg, air = one.leg, one.air.frames
-    angles = found[air]
-    angles[:, leg.knee_column] = unlocked(angles[:, leg.knee_column])
-    foot = place_foot(leg, angles)
-    turn = pelvis[air]
-    up = turn[:, 1]
+def _swung(leg: Leg, free: Floats, rise: Floats, pelvis: Floats, root: Floats) -> Floats:
+    """(m, K) angles of a leg in the air within their ranges: no foot touches the ground and no knee locks.
+
+    Args:
+        leg: the leg.
+        free: (m, K) the angles before their ranges and the ground are looked at.
+        rise: (m,) see :class:`Air`.
+        pelvis, root: (m, 3, 3) and (m, 3) as for :func:`stepped`.
+    """
+    free[:, _KNEE] = unlocked(free[:, _KNEE])
+    angles = squashed(free, *leg.limits)
+    foot = placed(leg, angles)
+    up = pelvis[:, 1]
     heel, toe = foot.ankle + turned(foot.foot, leg.heel), foot.ankle + turned(foot.foot, leg.toe)
-    height = root[air, 1]
-    lift = cleared((up * heel).sum(axis=1) + height, (up * toe).sum(axis=1) + height, one.air.rise)
+    height = root[:, 1]
+    lift = cleared((up * heel).sum(axis=1) + height, (up * toe).sum(axis=1) + height, rise)
     low = np.flatnonzero(lift > 0)
     if len(low):
         way = foot.ankle[low] + lift[low, None] * up[low]
-        rotation = angles[low, leg.hip_columns[2]]
-        wanted = None if leg.rigid else foot.foot[low]
-        angles[low[:, None], leg.columns] = leg_angles(leg, way, rotation, wanted)
-    found[air] = angles
+        foot_kept = None if leg.rigid else foot.foot[low]
+        more = leg_angles(leg, way, angles[low, _HIP_ROTATION], foot_kept) - angles[low]
+        angles[low] = squashed(free[low] + more, *leg.limits)
+    return angles
 
 
-def _on_ground(stood: Standing, planned: Floats, pelvis: Floats, root: Floats, heading: Floats) -> Floats:
-    """(n, K) angles of a leg that stands on its footprints."""
-    one = stood.one
-    way = stood.end - root
+def _on_ground(
+    stood: Standing, rows: Rows, planned: Floats, pelvis: Floats, root: Floats, heading: Floats
+) -> Floats:
+    """(m, K) angles of a leg that stands on its footprints, in some of its frames on the ground."""
+    one, leg = stood.one, stood.one.leg
+    foot = stood.foot[rows]
+    way = stood.end[rows] - root
     way[:, ::2] = level(way[:, ::2], -heading)
     way = turned_back(pelvis, way)
-    if one.leg.rigid:
-        yaw = one.yaw - heading - yaw_of(stood.foot)
-        planned = planned + np.outer(one.leg.hip_signs[2] * yaw, [0, 0, 1, 0])
-        return rigid_leg_angles(one.leg, way, stood.tip, planned)
-    yaw = yaw_of(stood.foot) - yaw_of(one.nominal.foot[one.frames])
-    rotation = planned[:, 2] + one.leg.hip_signs[2] * _LEG_TURNS * yaw
-    return leg_angles(one.leg, way, rotation, pelvis.swapaxes(1, 2) @ stood.foot)
+    if leg.rigid:
+        yaw = one.yaw[rows] - heading - yaw_of(foot)
+        planned = planned + np.outer(leg.hip_signs[2] * yaw, [0, 0, 1, 0])
+        return rigid_leg_angles(leg, way, stood.tip[rows], planned)
+    yaw = yaw_of(foot) - yaw_of(one.nominal.foot[one.frames[rows]])
+    rotation = planned[:, _HIP_ROTATION] + leg.hip_signs[2] * _LEG_TURNS * yaw
+    low, high = leg.limits
+    rotation = squashed(rotation, low[_HIP_ROTATION], high[_HIP_ROTATION])
+    return leg_angles(leg, way, rotation, pelvis.swapaxes(1, 2) @ foot)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["about_x", "about_y", "angles_of", "pitched", "product", "turned", "turned_back"]
+__all__ = ["about_x", "about_y", "about_z", "angles_of", "pitched", "product", "turned", "turned_back"]
 
 Floats = NDArray[np.float64]
 
@@ -44,6 +44,16 @@ def about_y(angle: Floats) -> Floats:
     found[:, 0, 0] = found[:, 2, 2] = np.cos(angle)
     found[:, 0, 2] = np.sin(angle)
     found[:, 2, 0] = -found[:, 0, 2]
+    return found
+
+
+def about_z(angle: Floats) -> Floats:
+    """(F, 3, 3) turns about Z by (F,) radians."""
+    found = np.zeros((len(angle), 3, 3))
+    found[:, 2, 2] = 1
+    found[:, 0, 0] = found[:, 1, 1] = np.cos(angle)
+    found[:, 1, 0] = np.sin(angle)
+    found[:, 0, 1] = -found[:, 1, 0]
     return found
 
 
