@@ -66,7 +66,7 @@ def again(simulation: Simulation, database: Database) -> Iterator[TrialLog]:
 
 def score_on(simulation: Simulation, part: Part) -> Score:
     database = simulation.database.subset(part.rows(simulation.database))
-    return joined([outcomes_of(log) for log in again(simulation, database)]).score
+    return joined([outcomes_of(log, simulation.trials) for log in again(simulation, database)]).score
 
 
 def bits(log: TrialLog, trial: int) -> dict[str, bytes]:
@@ -191,7 +191,7 @@ def test_the_files_do_what_the_manifest_promises(
     )
     database = Database.build(dict(takes), mirror=mirror, normalization=scale)
     logs = list(again(of.simulation, database))
-    scaled = joined([outcomes_of(log) for log in logs]).score
+    scaled = joined([outcomes_of(log, of.simulation.trials) for log in logs]).score
     assert told["runs"]["files_with_the_scale_of_the_whole"]["offset_mean"] == scaled.offset
     assert told["identical"] == written.identical == (goal == "lossless")
     if goal == "lossless":
@@ -246,6 +246,22 @@ def test_a_goal_that_is_no_share_is_refused(goal: float | str) -> None:
 
 def test_goals_are_shares_or_lossless() -> None:
     assert [goal_of(goal) for goal in ("30%", "0.3", 0.3, "lossless")] == [0.3, 0.3, 0.3, "lossless"]
+
+
+def test_trials_of_every_scenario_can_be_pruned_and_hold_as_the_verdict_has_it(folder: Path) -> None:
+    asked = ("constant", "start-stop", "slalom", "splines")
+    found = gmr.evaluate(
+        folder, speeds=(1.0,), turn_rates_deg=(0.0, 50.0), scenarios=asked, tracking=("time", "velocity")
+    )
+    of = prune(found, "20%", until=0.2)
+    trials = found.measured.trials
+    limits = found.summary.settings["limits"]
+    held = np.abs(trials["speed_error_share"]) <= limits["speed"]
+    held &= np.abs(trials["turn_rate_error_deg"]) <= limits["turn_rate_deg"]
+    held &= (trials["tracking"] == "velocity") | (trials["offset_mean"] <= limits["offset"])
+    assert of.outcomes.held.tolist() == held.tolist()
+    judged = (trials["scenario"] == "constant") & (trials["tracking"] == "time")
+    assert of.outcomes.score.offset == pytest.approx(trials["offset_mean"][judged].mean(), abs=1e-12)
 
 
 def test_so_much_cannot_go_that_nothing_is_left(found: Evaluation) -> None:

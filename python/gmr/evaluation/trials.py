@@ -15,7 +15,7 @@ from gmr.evaluation.scenario import Trial
 from gmr.evaluation.transitions import FORCED_END, INTER_CLIP, INTRA_CLIP, Transitions
 from gmr.table import Table
 
-__all__ = ["trials_table"]
+__all__ = ["speed_error_share", "trials_table"]
 
 
 def trials_table(
@@ -61,7 +61,7 @@ def trials_table(
         | {
             "clip_count": _clips_played(log, frames),
             "seconds": log.moving.sum(axis=1) / log.rate,
-            "speed_error_share": _speed_error_share(trials, log),
+            "speed_error_share": speed_error_share(trials, log),
             **_switches(trials),
             "path": np.array([trial.path for trial in trials], object),
             "slowest_speed": np.array([trial.slowest for trial in trials]),
@@ -76,7 +76,7 @@ def _switches(trials: Sequence[Trial]) -> dict[str, NDArray[np.float64]]:
     return {"switched_speed": pairs[:, 0], "switch_every": pairs[:, 1]}
 
 
-def _speed_error_share(trials: Sequence[Trial], log: Log) -> NDArray[np.float64]:
+def speed_error_share(trials: Sequence[Trial], log: Log) -> NDArray[np.float64]:
     """At each speed asked for, the worst; on a path of many speeds, or of standing, in the mean of all."""
     speed = metrics.path_speed(log)
     on_grid = np.array([not trial.path for trial in trials])

@@ -47,7 +47,7 @@ def lossless(evaluation: Evaluation, *, threads: int = 0) -> Part:
     from gmr.pruning.outcomes import joined, outcomes_of
 
     simulation = simulation_of(evaluation)
-    outcomes = joined([outcomes_of(log) for log in simulation.logs.values()])
+    outcomes = joined([outcomes_of(log, simulation.trials) for log in simulation.logs.values()])
     left = lossless_part(simulation.database, outcomes)
     prove(simulation, left, threads)
     return left

@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 
 from gmr.evaluation import metrics
 from gmr.evaluation.regions import Limits
+from gmr.evaluation.scenario import Trial
 from gmr.evaluation.simulation import Simulation, log_of
+from gmr.evaluation.trials import speed_error_share
 from gmr.matching.database import Database
 from gmr.matching.trial import Status, TrialLog
 
@@ -29,9 +31,9 @@ class Score:
     """How well a dataset does in R runs.
 
     Attributes:
-        offset: metres, mean of the mean distance from the path, over the runs that are steered along a timed
-            path at one speed, as on the report's map (where no run keeps one speed: over all that are timed);
-            NaN where there is none.
+        offset: metres, mean of the mean distance from the path, over the runs of constant speed and turn rate
+            that are steered along a timed path, as on the report's map (where there is none: over all that
+            are timed); NaN where none is.
         held: how many runs do what they are asked, as the verdict has it.
         runs: R.
     """
@@ -55,7 +57,7 @@ class Outcomes:
         rows: (R, S) int32, the row shown at each step, -1 after the end.
         landed: (R, S) whether the row was found by a search, at the start or by a jump.
         offset: (R,) mean distance from the timed path, metres; NaN where there is none to keep to.
-        steady: (R,) whether one speed is asked for throughout.
+        steady: (R,) whether one speed and one turn rate are asked for throughout.
         held: (R,) whether the run does what it is asked.
     """
 
@@ -86,11 +88,11 @@ class Outcomes:
         return replace(self, **changed)
 
 
-def outcomes_of(log: TrialLog) -> Outcomes:
+def outcomes_of(log: TrialLog, trials: Sequence[Trial]) -> Outcomes:
     """What became of the trials of a log."""
     seen = log_of(log)
-    speed, turn = metrics.path_speed(seen), metrics.turn_rate(seen)
-    share = metrics.worst_share(speed, seen.ref_speed, seen.moving)
+    share = speed_error_share(trials, seen)
+    turn = metrics.turn_rate(seen)
     turn_error = np.degrees(metrics.static_error(turn, seen.ref_turn_rate, seen.moving))
     held = (np.abs(share) <= LIMITS.speed) & (np.abs(turn_error) <= LIMITS.turn_rate_deg)
     offset = np.full(len(log), np.nan)
@@ -100,7 +102,7 @@ def outcomes_of(log: TrialLog) -> Outcomes:
     landed = (log.status == Status.JUMPED) | (log.status == Status.FORCED_AT_END)
     if landed.shape[1]:
         landed[:, 0] = True
-    steady = np.array([len({segment.speed for segment in each.segments}) == 1 for each in log.profiles], bool)
+    steady = np.array([trial.scenario == "constant" for trial in trials], bool)
     return Outcomes(log.row.astype(np.int32), landed, offset, steady, held)
 
 

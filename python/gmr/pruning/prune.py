@@ -80,7 +80,7 @@ def prune(
     tell = progress or (lambda phase, done, of: None)
     again = rerun or here(threads)
     simulation = simulation_of(evaluation)
-    outcomes = joined([outcomes_of(log) for log in simulation.logs.values()])
+    outcomes = joined([outcomes_of(log, simulation.trials) for log in simulation.logs.values()])
     tell("proving what can go", 0, 1)
     left = lossless_part(simulation.database, outcomes)
     prove(simulation, left, threads)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.errors import DatasetError
+from gmr.evaluation.scenario import Trial
 from gmr.evaluation.simulation import Simulation
 from gmr.matching.database import Database
 from gmr.matching.trial import Profile, Tracking, TrialLog, run_trials
@@ -38,13 +39,14 @@ class Asked:
     """What all runs are made of: T trials, each once for every tracking."""
 
     database: Database
+    trials: tuple[Trial, ...]
     profiles: tuple[Profile, ...]
     trackings: tuple[Tracking, ...]
 
     @classmethod
     def of(cls, simulation: Simulation) -> Asked:
         """As a simulation asked it."""
-        return cls(simulation.database, simulation.profiles, tuple(simulation.logs))
+        return cls(simulation.database, simulation.trials, simulation.profiles, tuple(simulation.logs))
 
 
 Rerun: TypeAlias = Callable[[Asked, Sequence[Again]], Iterator[tuple[int, Outcomes | None]]]
@@ -55,7 +57,24 @@ done; None where nothing is left that may be jumped to."""
 def made_again(asked: Asked, again: Again) -> Outcomes | None:
     """One of them, on this thread."""
     logs = logs_on(asked, again)
-    return None if logs is None else joined([outcomes_of(log) for log in logs])
+    if logs is None:
+        return None
+    by_tracking = {log.tracking: log for log in logs}
+    return joined(
+        [
+            outcomes_of(by_tracking[tracking], [asked.trials[place] for place in places])
+            for tracking, places in places_of(asked, again)
+        ]
+    )
+
+
+def places_of(asked: Asked, again: Again) -> Iterator[tuple[Tracking, list[int]]]:
+    """The trackings that there are runs of, each with the places of its trials."""
+    count = len(asked.trials)
+    for number, tracking in enumerate(asked.trackings):
+        places = [run - number * count for run in again.runs.tolist() if run // count == number]
+        if places:
+            yield tracking, places
 
 
 def logs_on(asked: Asked, again: Again, threads: int = 1) -> list[TrialLog] | None:
@@ -64,12 +83,10 @@ def logs_on(asked: Asked, again: Again, threads: int = 1) -> list[TrialLog] | No
         part = asked.database.subset(again.left)
     except DatasetError:
         return None
-    count, logs = len(asked.profiles), []
-    for number, tracking in enumerate(asked.trackings):
-        chosen = [asked.profiles[run - number * count] for run in again.runs if run // count == number]
-        if chosen:
-            logs.append(run_trials(part, chosen, tracking=tracking, threads=threads))
-    return logs
+    return [
+        run_trials(part, [asked.profiles[place] for place in places], tracking=tracking, threads=threads)
+        for tracking, places in places_of(asked, again)
+    ]
 
 
 def here(threads: int = 0) -> Rerun:

@@ -32,7 +32,7 @@ def _what_counts(of: Pruning) -> Iterator[str]:
     if not math.isnan(of.outcomes.score.offset):
         yield (
             "The mean offset is how far the character is from where the path has it at that time, over all "
-            "trials at one speed."
+            f"trials{' of constant speed and turn rate' if of.outcomes.steady.any() else ''}."
         )
 
 

@@ -165,7 +165,13 @@ def _written_and_checked(
     alone = _run(asked, _built(takes, options, None))
     tell("checking what was written", 1, 1)
     return Written(
-        beside, tuple(pieces), part, of.outcomes.score, _score(logs), _score(alone), bool(same.all())
+        beside,
+        tuple(pieces),
+        part,
+        of.outcomes.score,
+        _score(asked, logs),
+        _score(asked, alone),
+        bool(same.all()),
     )
 
 
@@ -178,8 +184,8 @@ def _run(asked: Asked, database: Database) -> list[TrialLog]:
     return [run_trials(database, asked.profiles, tracking=tracking) for tracking in asked.trackings]
 
 
-def _score(logs: list[TrialLog]) -> Score:
-    return joined([outcomes_of(log) for log in logs]).score
+def _score(asked: Asked, logs: list[TrialLog]) -> Score:
+    return joined([outcomes_of(log, asked.trials) for log in logs]).score
 
 
 def _renumbered(log: TrialLog, rows: Any) -> TrialLog:
