@@ -236,6 +236,11 @@ def _trials(trackings: tuple[str, ...], scenarios: tuple[str, ...], random: np.r
             "intra_clip_per_second": jumps * 0.25,
             "forced_end_per_second": jumps * 0.05,
             "clip_count": random.integers(2, 30, n),
+            "foot_slide_mm": 30 + 10 * random.gamma(2, 1 + offset),
+            "foot_slide_own_mm": random.uniform(20, 30, n),
+            "stances_per_second": random.uniform(2, 4, n),
+            "jerk_at_jumps": random.uniform(900, 1500, n),
+            "jerk_between_jumps": random.uniform(500, 800, n),
             "switched_speed": np.full(n, 4.0 if scenario == "switching" else np.nan),
             "switch_every": np.full(n, 5.0 if scenario == "switching" else np.nan),
         }

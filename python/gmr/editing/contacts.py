@@ -20,7 +20,7 @@ from gmr.errors import DatasetError, GmrError, SkeletonError
 from gmr.motion import Motion
 from gmr.tpose import leading_rest_frames
 
-__all__ = ["Contact", "Contacts", "contacts", "slide"]
+__all__ = ["Contact", "Contacts", "contacts", "resting", "slide"]
 
 Joint = str | int | np.integer[Any]
 Floats = NDArray[np.float64]
@@ -133,23 +133,54 @@ def contacts(
         raise SkeletonError(f"a joint is named twice: {', '.join(labels)}; name each once")
     lead = leading_rest_frames(motion)
     places = motion.positions(dtype=np.float64, joints=chosen)[lead:] / unit
-    found: list[Contact] = []
-    if len(places):
-        speeds = _speeds(places, motion.frame_time)
-        heights = places @ scene.up_vector
-        if ground is None:
-            around = min(round(_STEP * motion.fps), len(heights))
-            heights -= _levels(heights, speeds, speed[0], uneven, around)
-        else:
-            heights -= ground / unit
-        strict = (heights <= height[0]) & (speeds <= speed[0])
-        loose = (heights <= height[1]) & (speeds <= speed[1])
-        frames = max(round(least * motion.fps), 1)
-        for k, name in enumerate(labels):
-            for first, end in _runs_with(loose[:, k], strict[:, k]):
-                if end - first >= frames:
-                    found.append(Contact(name, first + lead, end + lead))
+    level = None if ground is None else ground / unit
+    rests = resting(places, scene.up_vector, motion.frame_time, height, speed, least, level, uneven)
+    found = [
+        Contact(name, first + lead, end + lead)
+        for name, runs in zip(labels, rests, strict=True)
+        for first, end in runs
+    ]
     return Contacts(tuple(found), labels, motion.frame_count, scene)
+
+
+def resting(
+    places: Floats,
+    up: Floats,
+    frame_time: float,
+    height: tuple[float, float] = (0.03, 0.04),
+    speed: tuple[float, float] = (0.3, 0.6),
+    least: float = 0.08,
+    ground: float | None = None,
+    uneven: float = 0.06,
+) -> list[list[tuple[int, int]]]:
+    """When joints rest on the ground, from their places alone; see :func:`contacts`.
+
+    Args:
+        places: (F, K, 3) metres.
+        up: (3,) the vertical.
+        frame_time: seconds from a frame to the next.
+        height, speed, least, uneven: as of :func:`contacts`.
+        ground: metres, likewise.
+
+    Returns:
+        For each of the K joints its stretches on the ground, first frame and frame after the last, in time.
+    """
+    if len(places) == 0:
+        return [[] for _ in range(places.shape[1])]
+    speeds = _speeds(places, frame_time)
+    heights = places @ up
+    if ground is None:
+        around = min(round(_STEP / frame_time), len(heights))
+        heights -= _levels(heights, speeds, speed[0], uneven, around)
+    else:
+        heights -= ground
+    strict = (heights <= height[0]) & (speeds <= speed[0])
+    loose = (heights <= height[1]) & (speeds <= speed[1])
+    frames = max(round(least / frame_time), 1)
+    return [
+        [run for run in _runs_with(loose[:, k], strict[:, k]) if run[1] - run[0] >= frames]
+        for k in range(places.shape[1])
+    ]
 
 
 def slide(places: Floats, up: Floats) -> float:

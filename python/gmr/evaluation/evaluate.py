@@ -150,7 +150,7 @@ def evaluate(
         "limits": asdict(Limits()),
     }
     frames = frames_of(database)
-    tables = measured(dataset, simulation, frames)
+    tables = measured(dataset, simulation, frames, thread_total)
     noted = (note for scenario in asked for note in getattr(scenario, "notes", ()))
     notes, failed = (*odd, *database.notes, *noted), failed | dict(database.excluded)
     found = Evaluation(

@@ -10,6 +10,7 @@ import numpy as np
 from gmr.evaluation.coverage import coverage_table
 from gmr.evaluation.coverage_symmetry import coverage_symmetry
 from gmr.evaluation.distributions import error_bins_table, error_fits_table
+from gmr.evaluation.footing import Ground, Shown, ground_of, shown
 from gmr.evaluation.frames import Frames
 from gmr.evaluation.graph import graph_table
 from gmr.evaluation.log import Log
@@ -17,6 +18,7 @@ from gmr.evaluation.paths import paths_table
 from gmr.evaluation.pose_coverage import pose_coverage, poses_of
 from gmr.evaluation.result import Tables
 from gmr.evaluation.scenario import Trial
+from gmr.evaluation.seen import seen_at_transitions, seen_in_clips, seen_in_trials
 from gmr.evaluation.segments import segments_table
 from gmr.evaluation.simulation import Simulation, log_of
 from gmr.evaluation.timeline import timeline_table
@@ -28,21 +30,28 @@ from gmr.table import Table
 __all__ = ["measured"]
 
 
-def measured(dataset: str, simulation: Simulation, frames: Frames) -> Tables:
+def measured(dataset: str, simulation: Simulation, frames: Frames, threads: int = 0) -> Tables:
     """Measure every trial, scenario by scenario.
 
     Args:
         dataset: its name.
         simulation: the trials.
         frames: of the simulation's database.
+        threads: 0 for all cores; the tables do not depend on it.
     """
-    sets = list(_sets(simulation, frames))
+    ground = ground_of(simulation.database)
+    sets = list(_sets(simulation, frames, ground, threads))
     counts = [play_counts(part.log, frames) for part in sets]
     coverage = coverage_table(dataset, frames)
     return Tables(
         trials=Table.joined(
             [
-                trials_table(dataset, part.trials, part.tracking, part.log, part.transitions, frames)
+                Table(
+                    dict(
+                        trials_table(dataset, part.trials, part.tracking, part.log, part.transitions, frames)
+                    )
+                    | seen_in_trials(part.log, part.transitions, part.shown)
+                )
                 for part in sets
             ]
         ),
@@ -55,11 +64,20 @@ def measured(dataset: str, simulation: Simulation, frames: Frames) -> Tables:
         ),
         transitions=Table.joined(
             [
-                transitions_table(dataset, part.scenario, part.tracking, part.transitions, frames)
+                transitions_table(
+                    dataset,
+                    part.scenario,
+                    part.tracking,
+                    part.transitions,
+                    frames,
+                    seen_at_transitions(part.log, part.transitions, part.shown),
+                )
                 for part in sets
             ]
         ),
-        clips=clips_table(dataset, np.sum(counts, axis=0), frames),
+        clips=Table(
+            dict(clips_table(dataset, np.sum(counts, axis=0), frames)) | seen_in_clips(ground, frames)
+        ),
         pose_coverage=pose_coverage(coverage, frames, poses_of(simulation.database)),
         coverage_symmetry=coverage_symmetry(dataset, coverage),
         segments=Table.joined(
@@ -90,15 +108,17 @@ class _Set:
     trials: tuple[Trial, ...]
     log: Log
     transitions: Transitions
+    shown: Shown
 
 
-def _sets(simulation: Simulation, frames: Frames) -> Iterator[_Set]:
+def _sets(simulation: Simulation, frames: Frames, ground: Ground, threads: int) -> Iterator[_Set]:
     """In the order of the rows of the table of trials."""
     scenario = np.array([trial.scenario for trial in simulation.trials])
     for tracking, trial_log in simulation.logs.items():
         log = log_of(trial_log)
+        seen = shown(simulation.database, ground, trial_log, threads)
         for name in dict.fromkeys(scenario.tolist()):
             chosen = np.flatnonzero(scenario == name)
             part = log.take(chosen)
             trials = tuple(simulation.trials[place] for place in chosen.tolist())
-            yield _Set(tracking, name, trials, part, transitions_of(part, frames))
+            yield _Set(tracking, name, trials, part, transitions_of(part, frames), seen.take(chosen))

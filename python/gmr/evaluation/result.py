@@ -135,7 +135,8 @@ class Tables:
             offset_sum along_track_mean along_track_rms cross_track_mean cross_track_rms
             inter_clip_per_second intra_clip_per_second forced_end_per_second
             search_cost_pose_mean search_cost_trajectory_mean clip_count seconds
-            speed_error_share switched_speed switch_every path slowest_speed.
+            speed_error_share switched_speed switch_every path slowest_speed
+            foot_slide_mm foot_slide_own_mm stances_per_second jerk_at_jumps jerk_between_jumps.
             ``path`` names a trial that is no cell of the grid, whose speed and turn rate are means.
             ``speed_error_share`` is the error at each speed asked for over that speed, of two the larger.
         coverage: one row a one-second window of the clips: dataset clip frame speed turn_rate_deg
@@ -146,10 +147,12 @@ class Tables:
             dataset scenario clip frame count | seconds tracking
         transitions: one row a pair of frames jumped between:
             dataset scenario from_clip from_frame to_clip to_frame kind count
-            | from_seconds to_seconds discontinuity_mean tracking.
+            | from_seconds to_seconds discontinuity_mean tracking foot_slide_added_mm jerk_mean.
             ``kind`` is "inter-clip", "intra-clip" or "forced end".
         clips: one row a clip: dataset clip seconds frames mirrored speed_mean turn_rate_mean_deg
-            played_seconds played_share used_share.
+            played_seconds played_share used_share
+            foot_slide_mm stances jerk_mean.
+            See :mod:`gmr.evaluation.seen` for feet and jerk.
             ``played_share`` is of the time of all trials, ``used_share`` of the clip's own frames.
 
         pose_coverage: one row a cell of 0.1 m/s by 5 degrees/s that the clips reach:

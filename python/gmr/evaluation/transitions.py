@@ -5,6 +5,7 @@ Source: the paper's section 3.3.2 and its Figures 3, 9 and 10.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -71,13 +72,28 @@ def transitions_of(log: Log, frames: Frames) -> Transitions:
 
 
 def transitions_table(
-    dataset: str, scenario: str, tracking: str, transitions: Transitions, frames: Frames
+    dataset: str,
+    scenario: str,
+    tracking: str,
+    transitions: Transitions,
+    frames: Frames,
+    seen: Mapping[str, NDArray[np.float64]] | None = None,
 ) -> Table:
-    """One row for every pair of frames and kind: how often, and how far apart the two poses were."""
+    """One row for every pair of frames and kind: how often, and how far apart the two poses were.
+
+    ``seen`` has further figures (K,) of every transition; the table has their means, NaN left out.
+    """
     keys = np.stack([transitions.from_row, transitions.to_row, transitions.kind], axis=1)
     pairs, which, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
     from_row, to_row, kind = pairs.reshape(-1, 3).T
     apart = np.bincount(which.ravel(), weights=transitions.discontinuity, minlength=len(pairs)) / count
+
+    def mean(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        known = np.isfinite(values)
+        number = np.bincount(which.ravel()[known], minlength=len(pairs))
+        total = np.bincount(which.ravel()[known], values[known], len(pairs))
+        return np.asarray(np.divide(total, number, out=np.full(len(pairs), np.nan), where=number > 0))
+
     return Table(
         {
             "dataset": _repeated(dataset, len(pairs)),
@@ -92,6 +108,7 @@ def transitions_table(
             "to_seconds": frames.seconds[to_row],
             "discontinuity_mean": apart,
             "tracking": _repeated(tracking, len(pairs)),
+            **{name: mean(values) for name, values in (seen or {}).items()},
         }
     )
 

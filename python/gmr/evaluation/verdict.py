@@ -19,6 +19,7 @@ from gmr.evaluation.path_sentences import path_sentences
 from gmr.evaluation.regions import Grid, Limits, failures, held_rectangle
 from gmr.evaluation.result import Verdict
 from gmr.evaluation.scenario_sentences import scenario_sentences
+from gmr.evaluation.seen_sentences import seen_sentences
 from gmr.evaluation.words import count, duration, listing, percent, some_of, span, turning
 from gmr.table import Table
 
@@ -66,6 +67,7 @@ def verdict(
             *failure_sentences(grid, regions),
             *scenario_sentences(trials, coverage, segments, grid.limits),
             *path_sentences(trials, coverage, grid.limits),
+            *seen_sentences(trials),
             *_side_sentences(coverage, mirrored),
             *clip_sentences(clips, usage),
             *(blending_sentences(poses) if poses is not None else ()),

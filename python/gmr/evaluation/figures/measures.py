@@ -111,6 +111,18 @@ def _asked(trials: Table, row: int) -> str:
     return asked(float(trials["speed"][row]), float(trials["turn_rate_deg"][row]))
 
 
+def _slide_sentence(trials: Table) -> str:
+    slide, own = trials["foot_slide_mm"], trials["foot_slide_own_mm"]
+    if not np.isfinite(slide).any():
+        return "No foot is ever seen to stand on the ground."
+    worst = int(np.nanargmax(slide))
+    return (
+        f"While a foot is down it slides {float(np.nanmedian(slide)) / 10:.1f} cm in the median trial, where "
+        f"the clips' own frames slide {float(np.nanmedian(own)) / 10:.1f} cm; most at "
+        f"{_asked(trials, worst)}, {slide[worst] / 10:.0f} cm."
+    )
+
+
 _METRES: Final = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
 
 MEASURES: Final = (
@@ -179,6 +191,17 @@ MEASURES: Final = (
         Classes("error", (1.0, 2.0, 4.0, 6.0, 8.0, 12.0)),
         None,
         _pose_sentence,
+    ),
+    Measure(
+        "foot_slide_mm",
+        "Foot slide",
+        "How far a foot slides while it is down, mean over the stances, cm",
+        "Centimetres",
+        0.1,
+        1,
+        Classes("error", (2.0, 4.0, 8.0, 16.0, 32.0, 64.0)),
+        None,
+        _slide_sentence,
     ),
 )
 """The measures that the report shows, in order; one more is one more entry."""
