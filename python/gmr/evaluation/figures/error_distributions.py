@@ -18,7 +18,7 @@ __all__ = ["error_distributions"]
 _SHOWN: Final = (1.0, -100.0)
 """Speed and turn rate of the trial in the paper's figure."""
 
-_POINTS: Final = 44
+_POINTS: Final = 46
 """Of a curve, half of them from three and a half deviations below each centre to as many above it."""
 
 _REACH: Final = 3.5
