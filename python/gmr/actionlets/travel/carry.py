@@ -151,7 +151,7 @@ def _footings(
         foot = place_foot(leg, values)
         nominal = Placed(turned(pelvis, foot.ankle), pelvis @ foot.foot)
         own = [stance for stance in every if stance.leg == k]
-        found.append(footing(leg, sole_of(body, leg), nominal, turned(pelvis, leg.hip), own, fps))
+        found.append(footing(leg, sole_of(leg), nominal, turned(pelvis, leg.hip), own, fps))
     if not any(one.stances for one in found):
         raise ActionletError(
             "no foot touches the ground in these frames: give the plan, or the action in its library file, "

@@ -15,11 +15,11 @@ Floats = NDArray[np.float64]
 _EASED = 0.1
 """Seconds before and after a frame over which the height is averaged."""
 
-_GOING = np.radians(10.0)
+_GOING = np.radians(8.0)
 """Radians of the knee's bend that a leg keeps while the body goes."""
 
-_LANDING = np.radians(8.0)
-_LANDING_MOST = np.radians(12.0)
+_LANDING = np.radians(7.0)
+_LANDING_MOST = np.radians(14.0)
 """Radians of that bend for each metre a second when the foot lands, and how many more that may be."""
 
 _GOES = 0.4

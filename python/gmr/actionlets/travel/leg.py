@@ -73,7 +73,7 @@ class Leg:
     """Columns of ankle flexion, inversion and rotation; None for a rigid ankle."""
     ankle_signs: Floats
     limits: tuple[Floats, Floats]
-    """(K,) lowest and highest angles of ``columns``."""
+    """(K,) lowest and highest angles of ``columns``; infinite with a rigid ankle."""
 
     @property
     def rigid(self) -> bool:

@@ -29,9 +29,9 @@ def legs_of(body: Body) -> tuple[Leg, Leg]:
     return left, right
 
 
-def sole_of(body: Body, leg: Leg) -> Sole:
+def sole_of(leg: Leg) -> Sole:
     """The sole of a leg's foot; rounded where the ankle is rigid."""
-    return Sole(leg.heel, leg.toe, read_only(np.array(body.foot.ball)), _ROUNDING if leg.rigid else 0.0)
+    return Sole(leg.heel, leg.toe, _ROUNDING if leg.rigid else 0.0)
 
 
 def pelvis_turn(body: Body, angles: Floats) -> Floats:
@@ -68,8 +68,15 @@ def _leg(body: Body, side: str) -> Leg:
         float(bends),
         (ankle[0], ankle[1], ankle[2]) if has_ankle else None,
         ankle_signs,
-        (read_only(body.low[[*hip, knee, *ankle]]), read_only(body.high[[*hip, knee, *ankle]])),
+        _limits(body, [*hip, knee, *ankle], kept=has_ankle),
     )
+
+
+def _limits(body: Body, columns: list[int], kept: bool) -> tuple[Floats, Floats]:
+    """Lowest and highest angles; none for a leg with a rigid ankle, which has no way to keep them."""
+    if not kept:
+        return read_only(np.full(len(columns), -np.inf)), read_only(np.full(len(columns), np.inf))
+    return read_only(body.low[columns]), read_only(body.high[columns])
 
 
 def _columns(body: Body, joint: str, motions: tuple[str, ...]) -> tuple[list[int], Floats]:

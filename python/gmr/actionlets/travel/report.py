@@ -199,7 +199,7 @@ def _feet_speed(body: Body, planned: Floats, every: Sequence[Stance], fps: float
     """Mean speed backwards, from the pelvis, of the footprints on which the planned feet would roll, in the
     middle half of each stance."""
     turn, legs = pelvis_turn(body, planned), legs_of(body)
-    soles = [sole_of(body, leg) for leg in legs]
+    soles = [sole_of(leg) for leg in legs]
     feet = [place_foot(leg, planned) for leg in legs]
     way, steps = 0.0, 0
     for stance in every:

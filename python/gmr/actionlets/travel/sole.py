@@ -24,9 +24,11 @@ __all__ = ["Sole", "pitch_of", "yaw_of"]
 Floats = NDArray[np.float64]
 
 _FLAT = np.radians(3.0)
-_LARGE = 0.8
 _FREE = np.radians(14.0)
 """Radians of nominal pitch up to which a foot on the ground is flat, and from which it keeps its pitch."""
+
+_RISES = 0.8
+"""Share of its nominal pitch by which a heel rises about the tip of the toes."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -37,8 +39,6 @@ class Sole:
     """(3,) from the ankle at rest, metres."""
     toe: Floats
     """(3,) the same, as low as the heel."""
-    ball: Floats
-    """(3,) the same: about which a foot with toes that bend would rise."""
     rounding: float
     """Radians of pitch to both sides of flat over which contact moves from heel to toe; 0 for corners."""
 
@@ -47,15 +47,13 @@ class Sole:
 
         It is flat to 3 degrees and free from 14 on, C2 between, so that a foot comes to rest on its sole and
         rises from it without a jolt. The nominal foot of people rises about its ball, this one, whose toes do
-        not bend, about their tip: it rises by less, so that the ankle is about as high. A rigid ankle has no
-        choice.
+        not bend, about their tip: it rises by a fifth less, so that the ankle is not much higher. A rigid
+        ankle has no choice.
         """
         if self.rounding:
             return pitch
-        size = np.abs(pitch)
-        share = float(self.ball[2] / self.toe[2])
-        less = share + (_LARGE - share) * smooth_step((size - np.radians(15.0)) / np.radians(45.0))
-        found: Floats = pitch * np.where(pitch < 0, less, 1.0) * smooth_step((size - _FLAT) / (_FREE - _FLAT))
+        free = smooth_step((np.abs(pitch) - _FLAT) / (_FREE - _FLAT))
+        found: Floats = pitch * np.where(pitch < 0, _RISES, 1.0) * free
         return found
 
     def contact(self, pitch: Floats) -> tuple[Floats, Floats]:

@@ -61,9 +61,7 @@ def stepped(
         on = one.frames[rows]
         if len(on):
             legs = _on_ground(stood, rows, plan[on], pelvis[on], root[on], heading[on])
-            if one.leg.rigid:
-                legs = squashed(legs, *limits)
-            else:
+            if not one.leg.rigid:
                 legs = kept_in_range(one, rows, legs, pelvis[on], root[on], heading[on])
             found[on[:, None], columns] = legs
             offsets[on] = unsquashed(legs, *limits) - plan[on]
