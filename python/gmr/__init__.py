@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         SkinError,
         SkinWarning,
     )
+    from gmr.evaluation.comparison import Comparison, compare
     from gmr.evaluation.evaluate import evaluate
     from gmr.evaluation.result import Evaluation
     from gmr.formats import read, read_character, read_folder, read_markers, write, write_character
@@ -36,6 +37,7 @@ __all__ = [
     "Bones",
     "ChannelLayout",
     "Character",
+    "Comparison",
     "DatasetError",
     "Evaluation",
     "FormatError",
@@ -51,6 +53,7 @@ __all__ = [
     "__version__",
     "actionlets",
     "bones",
+    "compare",
     "concatenate",
     "editing",
     "evaluate",
@@ -75,6 +78,7 @@ _HOMES = {
     "Bones": "gmr.bone_tails",
     "ChannelLayout": "gmr.channels",
     "Character": "gmr.skinning.character",
+    "Comparison": "gmr.evaluation.comparison",
     "DatasetError": "gmr.errors",
     "Evaluation": "gmr.evaluation.result",
     "FormatError": "gmr.errors",
@@ -89,6 +93,7 @@ _HOMES = {
     "SkinWarning": "gmr.errors",
     "__version__": "gmr._core",
     "bones": "gmr.bone_tails",
+    "compare": "gmr.evaluation.comparison",
     "concatenate": "gmr.concatenation",
     "evaluate": "gmr.evaluation.evaluate",
     "forward_kinematics": "gmr.kinematics",

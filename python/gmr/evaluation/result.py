@@ -5,7 +5,6 @@ Metres, seconds and degrees throughout; a column's name never changes once relea
 
 from __future__ import annotations
 
-import contextlib
 import importlib.util
 import os
 from collections.abc import Mapping, Sequence
@@ -17,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.evaluation.replays import Replays
-from gmr.replacing import replacing
-from gmr.table import FORMATS, Table
+from gmr.evaluation.table_files import write_tables
+from gmr.table import Table
 
 if TYPE_CHECKING:
     import pyarrow
@@ -280,25 +279,7 @@ class Evaluation:
             MissingExtraError: Parquet is asked for and pyarrow is not installed.
             OSError: the folder may not be written to, or the disk is full.
         """
-        if unknown := sorted(set(formats) - set(FORMATS)):
-            raise ValueError(f"unknown table format {unknown[0]!r}; known are {', '.join(FORMATS)}")
-        made_here = not Path(folder).exists()
-        Path(folder).mkdir(parents=True, exist_ok=True)
-        files = [
-            (Path(folder) / f"{name}.{suffix}", table, FORMATS[suffix])
-            for suffix in formats
-            for name, table in self.tables().items()
-        ]
-        try:
-            with replacing(*(path for path, _, _ in files)) as opened:
-                for file, (_, table, write) in zip(opened, files, strict=True):
-                    write(table, file)
-        except BaseException:
-            if made_here:
-                with contextlib.suppress(OSError):
-                    Path(folder).rmdir()
-            raise
-        return tuple(path for path, _, _ in files)
+        return write_tables(self.tables(), folder, formats)
 
     def report(self, path: str | os.PathLike[str], *added: Section) -> None:
         """Write the report: one self-contained HTML file that opens offline.

@@ -23,7 +23,7 @@ from gmr.evaluation.seen_sentences import seen_sentences
 from gmr.evaluation.words import count, duration, listing, percent, some_of, span, turning
 from gmr.table import Table
 
-__all__ = ["verdict"]
+__all__ = ["verdict", "what_counts"]
 
 STRAIGHT_WITHIN_DEG: Final = 12.5
 """Turns slower than this, degrees per second, count as going straight: half a step of the paper's grid."""
@@ -62,7 +62,7 @@ def verdict(
     return Verdict(
         _headline(grid),
         (
-            _what_counts(grid),
+            what_counts(grid),
             *_straight_sentences(grid),
             *failure_sentences(grid, regions),
             *scenario_sentences(trials, coverage, segments, grid.limits),
@@ -91,7 +91,8 @@ def _headline(grid: Grid) -> str:
     return f"{DOES} {held} of {count(trials, 'trial')} ({share}); it is good for {where}."
 
 
-def _what_counts(grid: Grid) -> str:
+def what_counts(grid: Grid) -> str:
+    """When a trial is said to be done as asked."""
     limits = grid.limits
     near = f"the character is within {limits.offset:g} m of where the planned path has it at that time, its"
     whose = near if grid.timed else "the character's"
