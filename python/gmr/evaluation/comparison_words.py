@@ -61,7 +61,7 @@ def _headline(names: Sequence[str], held: NDArray[np.bool_]) -> str:
 
 
 def _shared(grid: Grid, held: NDArray[np.bool_]) -> str:
-    shared, all_ = held.all(axis=0), all_of(len(held))
+    shared, all_ = np.asarray(held.all(axis=0)), all_of(len(held))
     number = int(shared.sum())
     if number == 0:
         return f"There is no trial that {all_} do as asked."
@@ -71,7 +71,7 @@ def _shared(grid: Grid, held: NDArray[np.bool_]) -> str:
 def _alone(names: Sequence[str], grid: Grid, held: NDArray[np.bool_]) -> Iterator[str]:
     nothing = []
     for place, name in enumerate(names):
-        others = np.delete(held, place, axis=0).any(axis=0)
+        others = np.asarray(np.delete(held, place, axis=0).any(axis=0))
         only = held[place] & ~others
         number = int(only.sum())
         if number:
@@ -92,7 +92,7 @@ def _s(held: NDArray[np.bool_]) -> str:
 
 
 def _none(grid: Grid, held: NDArray[np.bool_]) -> str:
-    missing = ~held.any(axis=0)
+    missing = np.asarray(~held.any(axis=0))
     number = int(missing.sum())
     if number == 0:
         return "Every trial is done by one of them."

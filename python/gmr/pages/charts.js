@@ -38,12 +38,13 @@ for (const group of document.querySelectorAll("[data-choose]")) {
     const chosen = [...group.querySelectorAll("input:checked, select")].map((control) => control.value).join(" ");
     const shown = figures.find((figure) => figure.dataset.choice === chosen);
     for (const figure of figures) figure.hidden = figure !== shown;
-    const element = shown.querySelector(".chart");
-    chart(element.dataset.figure).then(() => {
-      /* A chart that was hidden while the window changed has missed it. */
-      if (Math.abs(element.clientWidth - element.querySelector("svg").clientWidth) > 1) {
-        dispatchEvent(new Event("resize"));
-      }
-    });
+    for (const element of shown.querySelectorAll(".chart")) {
+      chart(element.dataset.figure).then(() => {
+        /* A chart that was hidden while the window changed has missed it. */
+        if (Math.abs(element.clientWidth - element.querySelector("svg").clientWidth) > 1) {
+          dispatchEvent(new Event("resize"));
+        }
+      });
+    }
   });
 }

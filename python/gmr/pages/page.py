@@ -37,6 +37,7 @@ class Page:
         data: what the page's own scripts read besides.
         scripts: their texts, in order.
         without_scripts: what a browser without JavaScript says is missing.
+        wide: whether figures stand side by side, and may take a large screen's whole width.
     """
 
     title: str
@@ -49,6 +50,7 @@ class Page:
     data: Mapping[str, Any] = field(default_factory=dict)
     scripts: Sequence[str] = ()
     without_scripts: str = "the charts need JavaScript, which is off in this browser"
+    wide: bool = False
 
     def html(self) -> str:
         """The whole file."""
@@ -59,6 +61,7 @@ class Page:
             "heading": text(self.heading),
             "version": text(version("gmr-motion")),
             "facts": self._facts(),
+            "width": "wide" if self.wide else "column",
             "sections": self.sections,
             "without_scripts": text(self.without_scripts),
             "style": _style(),

@@ -18,6 +18,8 @@ __all__ = ["compared_coverage"]
 _MOST_POINTS: Final = 18_000
 _COLOURS: Final = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8a6fd1")
 """After Okabe and Ito: told apart by colour-blind readers too, on white and on black."""
+_RARE: Final = 0.01
+"""Share of the windows that may turn too fast for the picture, which turning on the spot would stretch."""
 _SHAPES: Final = ("circle", "square", "triangle-up", "diamond", "cross")
 
 
@@ -29,7 +31,10 @@ def compared_coverage(evaluations: Sequence[Evaluation]) -> Figure:
     names = [evaluation.dataset for evaluation in evaluations]
     windows = [evaluation.measured.coverage for evaluation in evaluations]
     step = max(1, -(-sum(map(len, windows)) // _MOST_POINTS))
-    shown = [table.take(np.arange(0, len(table), step)) for table in windows]
+    turns = np.abs(np.concatenate([table["turn_rate_deg"] for table in windows]))
+    limit = max(100.0, float(np.quantile(turns, 1 - _RARE))) if len(turns) else 100.0
+    thinned = [table.take(np.arange(0, len(table), step)) for table in windows]
+    shown = [table.take(np.abs(table["turn_rate_deg"]) <= limit) for table in thinned]
     order = np.argsort(np.concatenate([np.arange(len(t)) / max(len(t), 1) for t in shown]), kind="stable")
     points = Table(
         {
@@ -42,30 +47,32 @@ def compared_coverage(evaluations: Sequence[Evaluation]) -> Figure:
     return Figure(
         name="compared_coverage",
         title="Speed and turn rate of every second of motion, by dataset",
-        sentence=_sentence(names, windows, step),
-        chart=_chart(points, names),
+        sentence=_sentence(names, windows, step, limit),
+        chart=_chart(points, names, limit),
         data={"windows": points},
         printable=False,
     )
 
 
-def _sentence(names: Sequence[str], windows: Sequence[Table], step: int) -> str:
-    parts = []
-    for name, table in zip(names, windows, strict=True):
-        if len(table) == 0:
-            parts.append(f"{name} has no clip of a second")
-            continue
+def _sentence(names: Sequence[str], windows: Sequence[Table], step: int, limit: float) -> str:
+    held = [(name, table) for name, table in zip(names, windows, strict=True) if len(table)]
+    if not held:
+        return "No clip is long enough for a single window of one second."
+    speeds, turning = [], []
+    for name, table in held:
         low, high = np.percentile(table["speed"], [5, 95])
-        turning = percent(float(np.mean(np.abs(table["turn_rate_deg"]) > 25)))
-        parts.append(
-            f"{name} moves at {low:.1f} to {high:.1f} m/s and turns faster than 25 degrees/s {turning}"
-        )
-    drawn = f" One window in {step} is drawn." if step > 1 else ""
-    return f"For nine tenths of its time, {listing(parts)} of the time.{drawn}"
+        speeds.append(f"of {name} lie between {low:.1f} and {high:.1f} m/s")
+        turning.append(f"{percent(float(np.mean(np.abs(table['turn_rate_deg']) > 25)))} of {name}")
+    outside = sum(int((np.abs(table["turn_rate_deg"]) > limit).sum()) for _, table in held)
+    parts = [
+        f"Nine tenths {listing(speeds)}; {listing(turning)} turn faster than 25 degrees/s.",
+        f"Faster turns than {limit:.0f} degrees/s are not drawn." if outside else "",
+        f"One window in {step} is drawn." if step > 1 else "",
+    ]
+    return " ".join(filter(None, parts))
 
 
-def _chart(points: Table, names: Sequence[str]) -> dict[str, Any]:
-    turn = float(np.abs(points["turn_rate_deg"]).max(initial=25.0))
+def _chart(points: Table, names: Sequence[str], turn: float) -> dict[str, Any]:
     speed = float(points["speed"].max(initial=1.0))
     return {
         "width": "container",

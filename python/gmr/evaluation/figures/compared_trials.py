@@ -81,16 +81,15 @@ def _sentence(names: Sequence[str], number: Any) -> str:
 
 
 def _chart(rows: int, datasets: int, hover: dict[str, tuple[str, str]]) -> dict[str, Any]:
-    steps = [round(number * (STEPS - 1) / datasets) for number in range(datasets + 1)]
+    steps = [f"amount-{round(number * (STEPS - 1) / datasets)}" for number in range(1, datasets + 1)]
+    grounds = ["var(--panel)", *(f"var(--{step})" for step in steps)]
+    inks = ["var(--ink)", *(f"var(--on-{step})" for step in steps)]
 
-    def colour(prefix: str, legend: dict[str, Any] | None) -> dict[str, Any]:
+    def colour(colours: list[str], legend: dict[str, Any] | None) -> dict[str, Any]:
         return {
             "field": "number",
             "type": "ordinal",
-            "scale": {
-                "domain": list(range(datasets + 1)),
-                "range": [f"var(--{prefix}amount-{step})" for step in steps],
-            },
+            "scale": {"domain": list(range(datasets + 1)), "range": colours},
             "legend": legend,
         }
 
@@ -102,9 +101,9 @@ def _chart(rows: int, datasets: int, hover: dict[str, tuple[str, str]]) -> dict[
     }
     marks = {
         "mark": {"type": "text", "fontSize": {"expr": "windowSize()[0] < 600 ? 9 : 13"}, "aria": False},
-        "encoding": {"text": {"field": "mark", "type": "nominal"}, "color": colour("on-", None)},
+        "encoding": {"text": {"field": "mark", "type": "nominal"}, "color": colour(inks, None)},
     }
-    chart = cells_of_trials(rows, colour("", legend), marks)
+    chart = cells_of_trials(rows, colour(grounds, legend), marks)
     tooltip = [one for one in chart["encoding"]["tooltip"] if one["field"] in ("speed", "turn_rate_deg")]
     told = [
         {"field": name, "title": title, **({"format": form} if form else {})}

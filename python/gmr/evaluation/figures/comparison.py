@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Any, Final
 
 from gmr.evaluation.figures import figures
 from gmr.evaluation.figures.compared_coverage import compared_coverage
@@ -47,9 +47,22 @@ def comparison_figures(evaluations: Sequence[Evaluation]) -> ComparedFigures:
                 drawn.setdefault(figure.name, []).append((place, figure))
     rows = {
         name: [
-            (place, replace(figure, name=f"{name}--{place + 1}"))
+            (place, replace(figure, name=f"{name}--{place + 1}", chart=_narrower(figure.chart, len(row))))
             for (place, _), figure in zip(row, on_same_axes([figure for _, figure in row]), strict=True)
         ]
         for name, row in drawn.items()
     }
     return ComparedFigures(compared_trials(evaluations), compared_coverage(evaluations), rows)
+
+
+def _narrower(chart: Any, columns: int) -> Any:
+    """The chart with small letters and narrow legends from where a column is no wider than a phone."""
+    match chart:
+        case str():
+            return chart.replace("windowSize()[0] < 600", f"windowSize()[0] < {max(600, 480 * columns)}")
+        case Mapping():
+            return {key: _narrower(value, columns) for key, value in chart.items()}
+        case list() | tuple():
+            return [_narrower(value, columns) for value in chart]
+        case _:
+            return chart

@@ -41,8 +41,8 @@ class _Axis:
 
     def __init__(self, axis: str, chart: dict[str, Any], figure: Figure) -> None:
         self.axis = axis
-        self.encodings = [
-            (layer, encoding, figure.data.get(data, {}))
+        self.encodings: list[tuple[dict[str, Any], dict[str, Any], Mapping[str, Any]]] = [
+            (layer, encoding, dict(figure.data[data]) if data in figure.data else {})
             for layer, encoding, data in _layers(chart)
             if encoding.get(axis, {}).get("type") == "quantitative"
         ]
@@ -80,7 +80,7 @@ class _Axis:
 
 
 def _layers(chart: dict[str, Any]) -> Iterator[tuple[dict[str, Any], dict[str, Any], str]]:
-    """Every mark of a chart with its encoding, which layers share with the chart, and the name of its data."""
+    """Every mark of a chart with its encoding, in part its layers' common one, and the name of its data."""
     shared = chart.get("encoding", {})
     data = chart.get("data", {}).get("name", "")
     if "layer" not in chart:
@@ -112,5 +112,5 @@ def _drawn(
         and encoding[axis].get("stack", True)
     ):
         _, place = np.unique(np.asarray(data[across]).astype(str), return_inverse=True)
-        columns.append(np.bincount(place.reshape(-1), columns[0]))
+        columns.append(np.bincount(place.reshape(-1), columns[0]).astype(np.float64))
     return np.concatenate(columns)

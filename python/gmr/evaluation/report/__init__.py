@@ -4,13 +4,30 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from gmr.evaluation.report.page import page
 from gmr.evaluation.result import Evaluation
 from gmr.pages.section import Section
 from gmr.replacing import replacing
 
-__all__ = ["write_report"]
+if TYPE_CHECKING:
+    from gmr.evaluation.comparison import Comparison
+
+__all__ = ["write_comparison", "write_report"]
+
+
+def write_comparison(comparison: Comparison, path: str | os.PathLike[str]) -> None:
+    """Write the report of a comparison, as :func:`write_report` does that of an evaluation.
+
+    Raises:
+        OSError: the file cannot be written, or the disk is full.
+    """
+    from gmr.evaluation.report.comparison_page import comparison_page
+
+    content = comparison_page(comparison).encode()
+    with replacing(path) as (file,):
+        file.write(content)
 
 
 def write_report(evaluation: Evaluation, path: str | os.PathLike[str], added: Sequence[Section] = ()) -> None:

@@ -18,10 +18,12 @@ from numpy.typing import NDArray
 
 from gmr.evaluation.figures.trial_maps import set_label
 from gmr.evaluation.figures.wording import asked_of, short_names
+from gmr.evaluation.replay import worst_trial
 from gmr.evaluation.replays import PlayedTrial, Replays
 from gmr.evaluation.report.replay import drawn_parents, head_of, on_a_bone, replay_sentence, sides
+from gmr.evaluation.result import Evaluation
 
-__all__ = ["packed_film"]
+__all__ = ["film_of", "packed_film"]
 
 MOST_BYTES: Final = 4_000_000
 """Of a dataset before it is deflated; the trials that stray least are left out where all would take more."""
@@ -33,6 +35,14 @@ _STRIDE: Final = 2
 """Every second row is held, 30 poses a second; the player fills in between."""
 _HALF_LIFE: Final = 0.1
 """Of the smoothing, seconds, as in :func:`gmr.matching.trial.trial_positions`."""
+
+
+def film_of(evaluation: Evaluation) -> dict[str, Any] | None:
+    """The trials of an evaluation for the page's JSON; None where it does not hold them."""
+    if evaluation.replays is None:
+        return None
+    hips, worst = evaluation.summary.joints.get("hips"), worst_trial(evaluation.measured.trials)
+    return packed_film(evaluation.replays, evaluation.dataset, hips, worst)
 
 
 def packed_film(replays: Replays, dataset: str, hips: str | None, worst: int) -> dict[str, Any]:

@@ -26,7 +26,9 @@ async function mapOf(name) {
 }
 
 function trialMap(element) {
-  const film = Number(element.dataset.film);
+  /* A map of all datasets replays the one that the player shows. */
+  const own = Number(element.dataset.film);
+  const filmNow = () => (own < 0 ? Math.max(marked.film, 0) : own);
   const drawing = element.querySelector(".chart"), name = drawing.dataset.figure;
   const ring = document.createElement("div"), cursor = document.createElement("div");
   const said = document.createElement("span");
@@ -59,13 +61,13 @@ function trialMap(element) {
     if (drawing.dataset.drawn !== "yes" || element.clientWidth === 0) return;
     const map = await mapOf(name);
     watch();
-    put(ring, map, marked.film === film ? map.cellOf(marked.trial) : null);
+    put(ring, map, marked.film === filmNow() ? map.cellOf(marked.trial) : null);
     put(cursor, map, document.activeElement === element ? at : null);
   }
 
   function replay(trial) {
     if (trial < 0) return;
-    document.dispatchEvent(new CustomEvent("replay", { detail: { film, trial, from: element } }));
+    document.dispatchEvent(new CustomEvent("replay", { detail: { film: filmNow(), trial, from: element } }));
   }
 
   element.addEventListener("click", async (event) => {
@@ -98,14 +100,14 @@ function trialMap(element) {
       map.turns[clamped(map.turns.indexOf(at[1]) + right, map.turns.length)]];
     marks();
     const index = map.trialAt(...at);
-    const told = page.films[film].trials.find((each) => each.index === index);
+    const told = page.films[filmNow()].trials.find((each) => each.index === index);
     said.textContent = told ? `${told.label}: ${told.away.toFixed(2)} m off` : "";
   });
 
   element.addEventListener("focus", async () => {
     const map = await mapOf(name);
     if (at === null) {
-      const first = marked.film === film ? map.cellOf(marked.trial) : null;
+      const first = marked.film === filmNow() ? map.cellOf(marked.trial) : null;
       at = first ?? [map.speeds[0], map.turns[0]];
     }
     marks();

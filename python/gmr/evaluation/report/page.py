@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
 from gmr.evaluation.figures import figures
 from gmr.evaluation.figures.clip_usage import recordings
 from gmr.evaluation.figures.transition_matrix import flows
-from gmr.evaluation.replay import worst_trial
-from gmr.evaluation.replays import Replays
-from gmr.evaluation.report.film import packed_film
+from gmr.evaluation.report.film import film_of
 from gmr.evaluation.report.sections import clip_groups, facts, sections
 from gmr.evaluation.result import Evaluation
 from gmr.pages.document import own
@@ -42,13 +40,8 @@ def page(evaluation: Evaluation, added: Sequence[Section] = ()) -> str:
         data={
             "clips": clips,
             "clipGroups": list(groups.values()),
-            "films": [] if evaluation.replays is None else [_film(evaluation, evaluation.replays)],
+            "films": [film for film in (film_of(evaluation),) if film is not None],
         },
         scripts=[own(__package__, name) for name in _SCRIPTS],
         without_scripts="the charts and the moving skeleton need JavaScript, which is off in this browser",
     ).html()
-
-
-def _film(evaluation: Evaluation, replays: Replays) -> dict[str, Any]:
-    hips = evaluation.summary.joints.get("hips")
-    return packed_film(replays, evaluation.dataset, hips, worst_trial(evaluation.measured.trials))

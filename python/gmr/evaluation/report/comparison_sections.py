@@ -1,0 +1,276 @@
+"""The sections of a comparison in reading order: what tells the datasets apart, then each of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Final, TypeAlias
+
+import numpy as np
+
+from gmr.evaluation.comparison import Comparison
+from gmr.evaluation.comparison_words import grids_of
+from gmr.evaluation.figures import Figure
+from gmr.evaluation.figures.comparison import ComparedFigures
+from gmr.evaluation.figures.measures import MEASURES
+from gmr.evaluation.figures.trial_maps import set_label, set_suffix, trial_sets
+from gmr.evaluation.replay import worst_trial
+from gmr.evaluation.report.method import SOURCE, terms
+from gmr.evaluation.report.replay import replay_sentence
+from gmr.evaluation.report.tables import Column, clip_columns, flow_columns, html_table, trial_columns
+from gmr.evaluation.result import Evaluation
+from gmr.evaluation.words import count
+from gmr.pages.document import element, items, own, section, text
+from gmr.table import Table
+
+__all__ = ["comparison_sections"]
+
+Rows: TypeAlias = "Mapping[str, Sequence[tuple[int, Figure]]]"
+
+_PLACES: Final = {
+    "datasets": "Each dataset",
+    "coverage": "Coverage",
+    "accuracy": "Accuracy",
+    "relevance": "Clips",
+    "transitions": "Transitions",
+    "replay": "Replay",
+    "tables": "Tables",
+    "method": "Method",
+}
+_RELEVANCE: Final = ("clip_usage", "frame_usage")
+_TRANSITIONS: Final = ("transition_kinds", "transition_matrix", "clip_circles")
+_COVERAGE: Final = ("coverage_density",)
+
+
+def comparison_sections(comparison: Comparison, drawn: ComparedFigures, tables: Mapping[str, Table]) -> str:
+    """The body of the page."""
+    names, rows = comparison.datasets, drawn.rows
+    replayed = all(each.replays is not None for each in comparison.evaluations)
+    placed = {*_RELEVANCE, *_TRANSITIONS, *_COVERAGE}
+    others = [name for name in rows if name not in placed and not name.startswith("trial_map_")]
+    parts = [
+        element(
+            "div", _verdict(comparison) + _one(drawn.trials, film=-1 if replayed else None), class_="opening"
+        ),
+        _failed(comparison.failed),
+        section(
+            "datasets",
+            "Each dataset by itself",
+            "",
+            _summaries(comparison.evaluations) + "".join(map(_spoken, comparison.evaluations)),
+        ),
+        section(
+            "coverage",
+            "What the datasets hold",
+            "Speed and turn rate, as means over one second that slides through every clip.",
+            _one(drawn.coverage) + _rows(rows, _COVERAGE, names),
+        ),
+        section(
+            "accuracy",
+            "How well they follow a path",
+            "In every trial a character driven by motion matching is sent along a circle, or straight ahead. "
+            "A cell is a trial; what stands after ± is its spread over time. A click replays it.",
+            _maps(comparison, rows, replayed) + _rows(rows, others, names),
+        ),
+        section("relevance", "Which clips carry them", "", _rows(rows, _RELEVANCE, names)),
+        section(
+            "transitions",
+            "How they get from clip to clip",
+            "A jump is a step at which the frame shown is not the next one of its clip.",
+            _rows(rows, _TRANSITIONS, names),
+        ),
+        _replay(comparison) if replayed else "",
+        _tables(tables),
+        section("method", "How it was measured", SOURCE, "".join(map(_method, comparison.evaluations))),
+    ]
+    return "\n".join(filter(None, parts))
+
+
+def _verdict(comparison: Comparison) -> str:
+    links = "".join(
+        element("li", element("a", text(name), href=f"#{place}")) for place, name in _PLACES.items()
+    )
+    return element(
+        "section",
+        element("h2", text(comparison.verdict.headline))
+        + element("ul", items(comparison.verdict.sentences))
+        + element("nav", element("ul", links), aria_label="Sections"),
+        id="verdict",
+    )
+
+
+def _failed(failed: Mapping[str, str]) -> str:
+    if not failed:
+        return ""
+    rows = "".join(
+        element("li", element("code", text(file)) + ": " + text(reason)) for file, reason in failed.items()
+    )
+    title = f"{count(len(failed), 'file')} could not be used"
+    return element("div", element("h2", text(title)) + element("ul", rows), class_="notice", id="failed")
+
+
+def _summaries(evaluations: Sequence[Evaluation]) -> str:
+    summaries = [each.summary for each in evaluations]
+    table = Table(
+        {
+            "dataset": np.array([each.dataset for each in evaluations], object),
+            "clips": np.array([one.clip_count for one in summaries]),
+            "mirrored": np.array([one.mirrored_count for one in summaries]),
+            "minutes": np.array([one.seconds / 60 for one in summaries]),
+            "frames": np.array([one.frame_count for one in summaries]),
+            "joints": np.array([one.joint_count for one in summaries]),
+            "done": np.array([float(grid.held.mean()) for grid in grids_of(evaluations)]),
+        }
+    )
+    columns = [
+        Column("dataset", "Dataset"),
+        Column("clips", "Clips", ",d"),
+        *([Column("mirrored", "Mirrored copies", ",d")] if table["mirrored"].any() else []),
+        Column("minutes", "Minutes", ".1f"),
+        Column("frames", "Frames", ",d"),
+        Column("joints", "Joints", ",d"),
+        Column("done", "Done as asked", ".0%"),
+    ]
+    return html_table(table, columns, "The datasets, sortable")
+
+
+def _spoken(evaluation: Evaluation) -> str:
+    said = [sentence for sentence in evaluation.verdict.sentences if sentence not in evaluation.notes]
+    full = element("ul", items(said), class_="sentences")
+    if evaluation.notes:
+        notes = element("ul", items(evaluation.notes), class_="sentences")
+        full += element("h4", "Noticed on the way") + notes
+    return (
+        element("h3", text(evaluation.dataset))
+        + element("p", text(evaluation.verdict.headline))
+        + _folded("The verdict in full", full)
+    )
+
+
+def _folded(title: str, content: str, name: str | None = None) -> str:
+    return element(
+        "details", element("summary", text(title)) + element("div", content, class_="inside"), id=name
+    )
+
+
+def _one(figure: Figure, film: int | None = None) -> str:
+    caption = element("figcaption", element("h3", text(figure.title)) + element("p", text(figure.sentence)))
+    return element("figure", caption + _chart(figure, film), class_="figure", id=figure.name)
+
+
+def _chart(figure: Figure, film: int | None) -> str:
+    shape = "chart ring" if figure.chart["height"] == "container" else "chart"
+    chart = element("div", "", class_=shape, data_figure=figure.name)
+    return chart if film is None else element("div", chart, class_="map", data_film=film)
+
+
+def _rows(rows: Rows, wanted: Sequence[str], names: Sequence[str]) -> str:
+    return "".join(_row(rows[name], names) for name in wanted if name in rows)
+
+
+def _row(
+    row: Sequence[tuple[int, Figure]],
+    names: Sequence[str],
+    *,
+    film: bool = False,
+    choice: str | None = None,
+    hidden: bool = False,
+) -> str:
+    """One figure of every dataset, side by side where there is room."""
+    figures = "".join(
+        element(
+            "figure",
+            element("figcaption", element("h4", text(names[place])) + element("p", text(figure.sentence)))
+            + _chart(figure, place if film else None),
+            class_="figure",
+            id=figure.name,
+        )
+        for place, figure in row
+    )
+    title = element("h3", text(row[0][1].title))
+    return element(
+        "div",
+        title + element("div", figures, class_="beside"),
+        class_="row",
+        data_choice=choice,
+        hidden=hidden,
+    )
+
+
+def _maps(comparison: Comparison, rows: Rows, replayed: bool) -> str:
+    """All maps of the trials, of which the controls show one measure of one set, for every dataset."""
+    sets = trial_sets(comparison.evaluations[0])
+    views = {"holds": "Verdict", **{measure.column: measure.label for measure in MEASURES}}
+    buttons = "".join(
+        element(
+            "label",
+            f"<input{' checked' if place == 0 else ''} type='radio' name='measure' autocomplete='off' "
+            f"value='{name}'>" + element("span", text(label)),
+        )
+        for place, (name, label) in enumerate(views.items())
+    )
+    controls = element(
+        "fieldset", element("legend", "Colour by") + buttons, class_="controls choices"
+    ) + _set_choice(sets)
+    content = "".join(
+        _row(
+            rows[f"trial_map_{name}{set_suffix(*each)}"],
+            comparison.datasets,
+            film=replayed,
+            choice=name + (f" {number}" if len(sets) > 1 else ""),
+            hidden=number + place > 0,
+        )
+        for number, each in enumerate(sets)
+        for place, name in enumerate(views)
+    )
+    return element("div", controls + content, data_choose=True)
+
+
+def _set_choice(sets: Sequence[tuple[str, str]]) -> str:
+    if len(sets) < 2:
+        return ""
+    options = "".join(
+        element("option", text(set_label(*each)), value=str(number)) for number, each in enumerate(sets)
+    )
+    label = element("label", "Trials", for_="set-select")
+    select = element("select", options, id="set-select", autocomplete="off")
+    return element("div", label + select, class_="controls")
+
+
+def _replay(comparison: Comparison) -> str:
+    first = comparison.evaluations[0]
+    assert first.replays is not None
+    worst = first.replays.trials[worst_trial(first.measured.trials)]
+    player = own(__package__, "player.html").replace("{{sentence}}", text(replay_sentence(worst)))
+    lead = "A click on a cell of a map above replays its trial; so do these lists."
+    return section("replay", "Any trial of any dataset, replayed", lead, player)
+
+
+def _tables(tables: Mapping[str, Table]) -> str:
+    dataset = Column("dataset", "Dataset")
+    shown = {
+        "trials": ("Trials", [dataset, *trial_columns(tables["trials"])]),
+        "clips": ("Clips", [dataset, *clip_columns()]),
+        "jumps": ("Jumps from clip to clip", [dataset, *flow_columns()]),
+    }
+    return section(
+        "tables",
+        "Tables",
+        "Metres, seconds, degrees. A header sorts; the CSV files hold every column and row.",
+        "".join(
+            _folded(
+                f"{title} ({len(tables[name]):,})",
+                element(
+                    "div",
+                    element("button", f"Save {name}.csv", type="button", data_save=name),
+                    class_="controls",
+                )
+                + html_table(tables[name], columns, f"{title}, sortable"),
+                f"table-{name}",
+            )
+            for name, (title, columns) in shown.items()
+        ),
+    )
+
+
+def _method(evaluation: Evaluation) -> str:
+    return _folded(evaluation.dataset, terms(evaluation.summary))
