@@ -22,7 +22,8 @@ if TYPE_CHECKING:
         SkinError,
         SkinWarning,
     )
-    from gmr.evaluation.comparison import Comparison, compare
+    from gmr.evaluation.compare import compare
+    from gmr.evaluation.comparison import Comparison
     from gmr.evaluation.evaluate import evaluate
     from gmr.evaluation.result import Evaluation
     from gmr.formats import read, read_character, read_folder, read_markers, write, write_character
@@ -93,7 +94,7 @@ _HOMES = {
     "SkinWarning": "gmr.errors",
     "__version__": "gmr._core",
     "bones": "gmr.bone_tails",
-    "compare": "gmr.evaluation.comparison",
+    "compare": "gmr.evaluation.compare",
     "concatenate": "gmr.concatenation",
     "evaluate": "gmr.evaluation.evaluate",
     "forward_kinematics": "gmr.kinematics",

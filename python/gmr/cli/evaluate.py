@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import math
-import shutil
-import textwrap
-from collections.abc import Mapping
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
@@ -14,13 +10,14 @@ import click
 
 from gmr.cli.common import say
 from gmr.cli.evaluation_options import evaluation_options
+from gmr.cli.evaluation_results import as_object, in_words
 from gmr.cli.outcome import at_place, left_out, trouble_with_files
 from gmr.cli.progress import Phases
 from gmr.cli.pruning import Pruned, check_pruning, prune_folder, pruning_options
 from gmr.cli.scenarios import check_scenarios, scenario_options
 
 if TYPE_CHECKING:
-    from gmr.evaluation import Evaluation
+    from gmr.evaluation import Comparison, Evaluation
     from gmr.evaluation.scenarios.asked import Asked
     from gmr.matching.trial import Tracking
 
@@ -29,7 +26,9 @@ EXAMPLES: Final = """
 Examples:
   gmr evaluate takes/                          report.html beside you
   gmr evaluate takes/ --mirror -o walks.html   with the mirror image of every clip
-  gmr evaluate takes/ --tables figures/        every number as CSV and Parquet too
+  gmr evaluate takes/ others/ -o both.html     several datasets in one report, on the same axes
+  gmr evaluate takes/ --tables tables/         every number as CSV and Parquet too
+  gmr evaluate takes/ --figures figures/       every figure as SVG too
   gmr evaluate takes/ --speeds 0.5:4:0.5 --turn-rates -180:180:45
   gmr evaluate takes/ --preset mig2022         the pacing of the paper's authors
   gmr evaluate takes/ --tracking both          closed loop and open loop
@@ -46,7 +45,13 @@ Exit codes: 0 all files were evaluated, 1 some or all could not be (they are nam
 
 
 @click.command(short_help="What a folder of locomotion clips can do, as a report.", epilog=EXAMPLES)
-@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.argument(
+    "folders",
+    metavar="FOLDER...",
+    nargs=-1,
+    required=True,
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+)
 @click.option(
     "-o",
     "--out",
@@ -60,6 +65,11 @@ Exit codes: 0 all files were evaluated, 1 some or all could not be (they are nam
     "--tables",
     type=click.Path(file_okay=False, path_type=Path),
     help="Write all numbers into this folder, as CSV and as Parquet (as JSON where pyarrow is missing).",
+)
+@click.option(
+    "--figures",
+    type=click.Path(file_okay=False, path_type=Path),
+    help="Write all figures into this folder, as SVG; of several datasets, each into a folder in it.",
 )
 @click.option(
     "--tracking",
@@ -77,10 +87,11 @@ Exit codes: 0 all files were evaluated, 1 some or all could not be (they are nam
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the verdict.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
 def evaluate(
-    folder: Path,
+    folders: tuple[Path, ...],
     out: Path,
     no_report: bool,
     tables: Path | None,
+    figures: Path | None,
     mirror: bool,
     tracking: str,
     scenarios: tuple[Asked, ...],
@@ -101,18 +112,21 @@ def evaluate(
     A character made of the clips in FOLDER (and the folders in it) is sent along circles and straight
     lines at many speeds by motion matching. The verdict says which speeds and turns the clips cover, where
     they fail and why, which clips carry them, which are never played, and what to capture next. The report
-    shows it all; it is one HTML file that opens without a network.
+    shows it all; it is one HTML file that opens without a network. Of several folders each is a dataset of
+    its own: all are sent through the same trials, and first comes what one does that the others cannot.
     """
     import gmr
 
     check_scenarios(scenarios, speeds, turn_rates, preset, seed)
+    if len(folders) > 1 and prune is not None:
+        raise click.UsageError("--prune makes one dataset smaller; give one folder.")
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):
-        _check_places(None if no_report else out, tables, phases)
+        _check_places(None if no_report else out, tables, figures, phases)
         if prune is not None:
             check_pruning(prune_out, phases)
-        found = gmr.evaluate(
-            folder,
+        found = _evaluated(
+            folders,
             preset=preset,
             mirror=mirror,
             scenarios=scenarios,
@@ -127,11 +141,12 @@ def evaluate(
         )
         pruned = None
         if prune is not None:
+            assert isinstance(found, gmr.Evaluation)
             pruned = prune_folder(
-                found, folder, prune, prune_out, phases, threads=threads, names=names, unit=unit
+                found, folders[0], prune, prune_out, phases, threads=threads, names=names, unit=unit
             )
-        written = _write(found, None if no_report else out, tables, phases, pruned)
-    click.echo(_summary(found, written, pruned) if as_json else _verdict(found, written))
+        written = _write(found, None if no_report else out, tables, figures, phases, pruned)
+    click.echo(as_object(found, written, pruned) if as_json else in_words(found, written))
     if pruned is not None and not as_json:
         click.echo(pruned.words())
     for sentence in left_out(found.failed):
@@ -139,7 +154,13 @@ def evaluate(
     return 1 if found.failed else 0
 
 
-def _check_places(out: Path | None, tables: Path | None, phases: Phases) -> None:
+def _evaluated(folders: Sequence[Path], **settings: Any) -> Evaluation | Comparison:
+    import gmr
+
+    return gmr.evaluate(folders[0], **settings) if len(folders) == 1 else gmr.compare(folders, **settings)
+
+
+def _check_places(out: Path | None, tables: Path | None, figures: Path | None, phases: Phases) -> None:
     """Learn before all the work that its results cannot be kept."""
     from gmr.replacing import check_place
 
@@ -147,13 +168,24 @@ def _check_places(out: Path | None, tables: Path | None, phases: Phases) -> None
     if tables is not None:
         with at_place(tables):
             check_place(tables / "trials.csv")
+    if figures is not None:
+        from gmr.evaluation.figures.svg_files import check_svg
+
+        check_svg()
+        with at_place(figures):
+            check_place(figures / "figure.svg")
     if out is not None:
         with at_place(out):
             check_place(out)
 
 
 def _write(
-    found: Evaluation, out: Path | None, tables: Path | None, phases: Phases, pruned: Pruned | None
+    found: Evaluation | Comparison,
+    out: Path | None,
+    tables: Path | None,
+    figures: Path | None,
+    phases: Phases,
+    pruned: Pruned | None,
 ) -> dict[str, Any]:
     """Write what was asked for; the answer says where it lies."""
     written: dict[str, Any] = {}
@@ -163,11 +195,21 @@ def _write(
         with at_place(tables):
             written["tables"] = [str(path) for path in found.write_tables(tables, ("csv", columnar))]
         phases.tell("writing tables", 1, 1)
+    if figures is not None:
+        phases.tell("writing figures", 0, 1)
+        with at_place(figures):
+            written["figures"] = [str(path) for path in found.write_figures(figures)]
+        phases.tell("writing figures", 1, 1)
     if out is not None:
+        from gmr.evaluation.comparison import Comparison
+
         phases.tell("writing the report", 0, 1)
         with at_place(out):
             out.parent.mkdir(parents=True, exist_ok=True)
-            found.report(out, *([] if pruned is None else [pruned.section()]))
+            if isinstance(found, Comparison):
+                found.report(out)
+            else:
+                found.report(out, *([] if pruned is None else [pruned.section()]))
         written["report"] = str(out)
         phases.tell("writing the report", 1, 1)
     return written
@@ -177,50 +219,3 @@ def _has_pyarrow() -> bool:
     from importlib.util import find_spec
 
     return find_spec("pyarrow") is not None
-
-
-def _verdict(found: Evaluation, written: Mapping[str, Any]) -> str:
-    width = min(shutil.get_terminal_size((100, 24)).columns, 100)
-    lines = [*textwrap.wrap(found.verdict.headline, width), ""]
-    for sentence in found.verdict.sentences:
-        lines += textwrap.wrap(sentence, width, initial_indent="- ", subsequent_indent="  ")
-    if written:
-        lines.append("")
-    if "tables" in written:
-        lines.append(f"Tables: {Path(written['tables'][0]).parent}")
-    if "report" in written:
-        lines.append(f"Report: {written['report']}")
-    return "\n".join(lines)
-
-
-def _summary(found: Evaluation, written: Mapping[str, Any], pruned: Pruned | None) -> str:
-    summary = found.summary
-    return json.dumps(
-        {
-            "dataset": found.dataset,
-            "verdict": {"headline": found.verdict.headline, "sentences": found.verdict.sentences},
-            "clips": summary.clip_count,
-            "mirrored_clips": summary.mirrored_count,
-            "frames": summary.frame_count,
-            "seconds": summary.seconds,
-            "rate": summary.rate,
-            "joints": dict(summary.joints),
-            "unit": summary.unit,
-            "settings": dict(summary.settings),
-            "trials": [_finite(row) for row in found.measured.trials.rows()],
-            "notes": found.notes,
-            "failed": dict(found.failed),
-            "written": dict(written),
-            **({} if pruned is None else {"pruned": pruned.summary()}),
-        },
-        indent=2,
-        ensure_ascii=False,
-    )
-
-
-def _finite(row: Mapping[str, Any]) -> dict[str, Any]:
-    """JSON has no NaN: what is not known is null."""
-    return {
-        name: None if isinstance(value, float) and not math.isfinite(value) else value
-        for name, value in row.items()
-    }

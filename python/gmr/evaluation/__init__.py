@@ -6,12 +6,14 @@ datasets through motion matching techniques", MIG 2022.
 
 from __future__ import annotations
 
+from gmr.evaluation.comparison import Comparison, comparison_of
 from gmr.evaluation.result import Evaluation, Replay, Summary, Tables, Verdict
 from gmr.evaluation.scenario import Segment, Trial
 from gmr.evaluation.scenarios import PathPoints, Scenario, Slalom, Splines, StartStop
 from gmr.table import Table
 
 __all__ = [
+    "Comparison",
     "Evaluation",
     "PathPoints",
     "Replay",
@@ -25,4 +27,5 @@ __all__ = [
     "Tables",
     "Trial",
     "Verdict",
+    "comparison_of",
 ]

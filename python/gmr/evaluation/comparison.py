@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
 from gmr.errors import DatasetError
 from gmr.evaluation.comparison_words import comparison_verdict
-from gmr.evaluation.evaluate import Source, evaluate
-from gmr.evaluation.result import Evaluation, Tables, Verdict
+from gmr.evaluation.result import Evaluation, Verdict
 from gmr.evaluation.table_files import write_tables
 from gmr.table import Table
 
-__all__ = ["Comparison", "compare", "comparison_of"]
-
-Progress: TypeAlias = Callable[[str, int, int], object]
+__all__ = ["Comparison", "comparison_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +57,17 @@ class Comparison:
         """Write every table into a folder, as :meth:`Evaluation.write_tables` does."""
         return write_tables(self.tables(), folder, formats)
 
+    def write_figures(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+        """Write the figures as SVG: those of all datasets into a folder, those of each into one in it.
+
+        Raises:
+            MissingExtraError: vl-convert-python is not installed.
+            OSError: the folder may not be written to, or the disk is full.
+        """
+        from gmr.evaluation.figures.comparison import svg_of_comparison
+
+        return svg_of_comparison(self.evaluations, folder)
+
     def report(self, path: str | os.PathLike[str]) -> None:
         """Write one report for all datasets: a self-contained HTML file that opens offline.
 
@@ -69,45 +77,6 @@ class Comparison:
         from gmr.evaluation.report import write_comparison
 
         write_comparison(self, path)
-
-
-def compare(
-    sources: Iterable[Source] | Mapping[str, Source],
-    *,
-    progress: Progress | None = None,
-    **settings: Any,
-) -> Comparison:
-    """Measure what several sets of locomotion clips can do, by the same trials.
-
-    Args:
-        sources: two or more of what :func:`gmr.evaluate` takes, or such by the name of the dataset.
-        progress: as of :func:`gmr.evaluate`; phases are told as ``<dataset>: <phase>``.
-        settings: all others of :func:`gmr.evaluate`, for every dataset.
-
-    Returns:
-        The evaluations and what they show beside each other. Datasets of one name get that of the folder that
-        theirs is in before it, else a number.
-
-    Raises:
-        DatasetError: fewer than two sources; or as :func:`gmr.evaluate`, with the dataset named.
-        ValueError, FormatError: as :func:`gmr.evaluate`.
-    """
-    given = list(sources.values()) if isinstance(sources, Mapping) else list(sources)
-    names = list(sources) if isinstance(sources, Mapping) else dataset_names(given)
-    if len(given) < 2:
-        raise DatasetError("a comparison needs two datasets or more; give them, or use gmr.evaluate for one")
-    tell = progress or (lambda phase, done, of: None)
-
-    def found(source: Source, name: str) -> Evaluation:
-        try:
-            evaluation = evaluate(
-                source, progress=lambda phase, done, of: tell(f"{name}: {phase}", done, of), **settings
-            )
-        except DatasetError as error:
-            raise DatasetError(f"{name}: {error}") from error
-        return _renamed(evaluation, name)
-
-    return comparison_of([found(source, name) for source, name in zip(given, names, strict=True)])
 
 
 def comparison_of(evaluations: Iterable[Evaluation]) -> Comparison:
@@ -131,50 +100,9 @@ def comparison_of(evaluations: Iterable[Evaluation]) -> Comparison:
     return Comparison(held, comparison_verdict(held))
 
 
-def dataset_names(sources: Sequence[Source]) -> list[str]:
-    """A name for each source, no two the same: of its folder, with that of the folder around it where two
-    agree, else with a number.
-    """
-    places = [Path(source).resolve() if isinstance(source, str | os.PathLike) else None for source in sources]
-    names = ["motions" if place is None else _printable(place.name) for place in places]
-    alike = {name for name, times in Counter(names).items() if times > 1}
-    names = [
-        _printable(f"{place.parent.name}/{place.name}") if place is not None and name in alike else name
-        for name, place in zip(names, places, strict=True)
-    ]
-    unique: list[str] = []
-    for name in names:
-        again, number = name, 1
-        while again in unique:
-            number += 1
-            again = f"{name} ({number})"
-        unique.append(again)
-    return unique
-
-
-def _printable(text: str) -> str:
-    return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
-
-
 def _asked(evaluation: Evaluation) -> list[Any]:
     trials = evaluation.measured.trials
     return [trials[name].tolist() for name in ("scenario", "tracking", "speed", "turn_rate_deg")]
-
-
-def _renamed(evaluation: Evaluation, name: str) -> Evaluation:
-    """The evaluation with another name of its dataset, in its tables too."""
-    if evaluation.dataset == name:
-        return evaluation
-    tables = {
-        each: Table({**dict(table), "dataset": np.full(len(table), name, object)})
-        for each, table in evaluation.tables().items()
-    }
-    return replace(
-        evaluation,
-        dataset=name,
-        measured=Tables(**tables),
-        summary=replace(evaluation.summary, dataset=name),
-    )
 
 
 def _joined(tables: Sequence[Table]) -> Table:

@@ -61,7 +61,8 @@ def _headline(names: Sequence[str], held: NDArray[np.bool_]) -> str:
 
 
 def _shared(grid: Grid, held: NDArray[np.bool_]) -> str:
-    shared, all_ = np.asarray(held.all(axis=0)), all_of(len(held))
+    shared: NDArray[np.bool_] = np.all(held, axis=0)
+    all_ = all_of(len(held))
     number = int(shared.sum())
     if number == 0:
         return f"There is no trial that {all_} do as asked."
@@ -71,7 +72,7 @@ def _shared(grid: Grid, held: NDArray[np.bool_]) -> str:
 def _alone(names: Sequence[str], grid: Grid, held: NDArray[np.bool_]) -> Iterator[str]:
     nothing = []
     for place, name in enumerate(names):
-        others = np.asarray(np.delete(held, place, axis=0).any(axis=0))
+        others: NDArray[np.bool_] = np.any(np.delete(held, place, axis=0), axis=0)
         only = held[place] & ~others
         number = int(only.sum())
         if number:
@@ -92,7 +93,7 @@ def _s(held: NDArray[np.bool_]) -> str:
 
 
 def _none(grid: Grid, held: NDArray[np.bool_]) -> str:
-    missing = np.asarray(~held.any(axis=0))
+    missing: NDArray[np.bool_] = ~np.any(held, axis=0)
     number = int(missing.sum())
     if number == 0:
         return "Every trial is done by one of them."
@@ -105,9 +106,12 @@ def _largest(grid: Grid, cells: NDArray[np.bool_]) -> str:
     if block is None:
         return "none"
     where = f"{turning(*block.turn_rates_deg)} at {span(*block.speeds, 'm/s')}"
-    if block.trials == cells.sum():
+    rest = int(cells.sum()) - block.trials
+    if rest == 0:
         return where
-    return f"{block.trials} of them {where}, the others here and there"
+    if block.trials == 1:
+        return "here and there on the grid"
+    return f"{block.trials} of them {where}, {'one elsewhere' if rest == 1 else 'the others here and there'}"
 
 
 def _closest(names: Sequence[str], grids: Sequence[Grid], held: NDArray[np.bool_]) -> Iterator[str]:

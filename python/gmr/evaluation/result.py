@@ -281,6 +281,17 @@ class Evaluation:
         """
         return write_tables(self.tables(), folder, formats)
 
+    def write_figures(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+        """Write every printable figure as SVG into a folder, ``<figure>.svg`` each: all of them, or none.
+
+        Raises:
+            MissingExtraError: vl-convert-python is not installed.
+            OSError: the folder may not be written to, or the disk is full.
+        """
+        from gmr.evaluation.figures import svg
+
+        return svg(self, folder)
+
     def report(self, path: str | os.PathLike[str], *added: Section) -> None:
         """Write the report: one self-contained HTML file that opens offline.
 

@@ -6,7 +6,6 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from gmr.errors import MissingExtraError
 from gmr.evaluation.figures.clip_circles import clip_circles
 from gmr.evaluation.figures.clip_usage import clip_usage
 from gmr.evaluation.figures.cost_over_time import cost_over_time
@@ -19,6 +18,7 @@ from gmr.evaluation.figures.measures import MEASURES
 from gmr.evaluation.figures.planned_paths import planned_paths
 from gmr.evaluation.figures.pose_distance import pose_distance
 from gmr.evaluation.figures.speed_switches import speed_switches
+from gmr.evaluation.figures.svg_files import write_svg
 from gmr.evaluation.figures.transition_kinds import transition_kinds
 from gmr.evaluation.figures.transition_matrix import transition_matrix
 from gmr.evaluation.figures.trial_maps import trial_map, trial_sets
@@ -26,7 +26,6 @@ from gmr.evaluation.figures.turn_symmetry import turn_symmetry
 from gmr.evaluation.path_sentences import path_sets
 from gmr.evaluation.result import Evaluation
 from gmr.pages.figure import Figure
-from gmr.replacing import replacing
 
 __all__ = ["Figure", "figures", "svg"]
 
@@ -69,17 +68,6 @@ def svg(evaluation: Evaluation, folder: str | os.PathLike[str]) -> tuple[Path, .
         MissingExtraError: vl-convert-python is not installed.
         OSError: the folder may not be written to, or the disk is full.
     """
-    try:
-        import vl_convert
-    except ImportError as error:
-        raise MissingExtraError("vl-convert-python", "report", "Writing figures as SVG") from error
-    drawn = {
-        Path(folder) / f"{figure.name}.svg": vl_convert.vegalite_to_svg(figure.description())
-        for figure in figures(evaluation)
-        if figure.printable
-    }
-    Path(folder).mkdir(parents=True, exist_ok=True)
-    with replacing(*drawn) as files:
-        for file, text in zip(files, drawn.values(), strict=True):
-            file.write(text.encode())
-    return tuple(drawn)
+    return write_svg(
+        {Path(folder) / f"{figure.name}.svg": figure for figure in figures(evaluation) if figure.printable}
+    )

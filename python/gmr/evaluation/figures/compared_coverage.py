@@ -58,10 +58,11 @@ def _sentence(names: Sequence[str], windows: Sequence[Table], step: int, limit: 
     held = [(name, table) for name, table in zip(names, windows, strict=True) if len(table)]
     if not held:
         return "No clip is long enough for a single window of one second."
-    speeds, turning = [], []
+    speeds: list[str] = []
+    turning: list[str] = []
     for name, table in held:
         low, high = np.percentile(table["speed"], [5, 95])
-        speeds.append(f"of {name} lie between {low:.1f} and {high:.1f} m/s")
+        speeds.append(f"of {name}{'' if speeds else ' lie'} between {low:.1f} and {high:.1f} m/s")
         turning.append(f"{percent(float(np.mean(np.abs(table['turn_rate_deg']) > 25)))} of {name}")
     outside = sum(int((np.abs(table["turn_rate_deg"]) > limit).sum()) for _, table in held)
     parts = [

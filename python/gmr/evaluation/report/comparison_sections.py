@@ -38,7 +38,7 @@ _PLACES: Final = {
 }
 _RELEVANCE: Final = ("clip_usage", "frame_usage")
 _TRANSITIONS: Final = ("transition_kinds", "transition_matrix", "clip_circles")
-_COVERAGE: Final = ("coverage_density",)
+_COVERAGE: Final = ("coverage_density", "pose_distance", "turn_symmetry")
 
 
 def comparison_sections(comparison: Comparison, drawn: ComparedFigures, tables: Mapping[str, Table]) -> str:

@@ -1,0 +1,99 @@
+"""What ``gmr evaluate`` prints: the verdict for people, or one JSON object for a machine."""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+import textwrap
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from gmr.cli.pruning import Pruned
+    from gmr.evaluation import Comparison, Evaluation, Verdict
+
+__all__ = ["as_object", "in_words"]
+
+
+def in_words(found: Evaluation | Comparison, written: Mapping[str, Any]) -> str:
+    """The verdict, for several datasets also the first sentence on each, and where the results lie."""
+    width = min(shutil.get_terminal_size((100, 24)).columns, 100)
+    lines = [*textwrap.wrap(found.verdict.headline, width), ""]
+    lines += _listed(found.verdict.sentences, width)
+    evaluations = _evaluations(found)
+    for evaluation in evaluations if len(evaluations) > 1 else ():
+        lines += ["", *textwrap.wrap(f"{evaluation.dataset}: {evaluation.verdict.headline}", width)]
+    if written:
+        lines.append("")
+    if "tables" in written:
+        lines.append(f"Tables: {Path(written['tables'][0]).parent}")
+    if "figures" in written:
+        lines.append(f"Figures: {Path(written['figures'][0]).parent}")
+    if "report" in written:
+        lines.append(f"Report: {written['report']}")
+    return "\n".join(lines)
+
+
+def as_object(
+    found: Evaluation | Comparison, written: Mapping[str, Any], pruned: Pruned | None = None
+) -> str:
+    """The figures as JSON: of one dataset as they are, of several as a list, with the verdict on all."""
+    evaluations = _evaluations(found)
+    told = _described(evaluations[0])
+    if len(evaluations) > 1:
+        told = {
+            "verdict": _verdict(found.verdict),
+            "datasets": [_described(evaluation) for evaluation in evaluations],
+            "failed": dict(found.failed),
+        }
+    told["written"] = dict(written)
+    if pruned is not None:
+        told["pruned"] = pruned.summary()
+    return json.dumps(told, indent=2, ensure_ascii=False)
+
+
+def _evaluations(found: Evaluation | Comparison) -> tuple[Evaluation, ...]:
+    from gmr.evaluation import Comparison
+
+    return found.evaluations if isinstance(found, Comparison) else (found,)
+
+
+def _listed(sentences: Iterable[str], width: int) -> list[str]:
+    return [
+        line
+        for sentence in sentences
+        for line in textwrap.wrap(sentence, width, initial_indent="- ", subsequent_indent="  ")
+    ]
+
+
+def _verdict(verdict: Verdict) -> dict[str, Any]:
+    return {"headline": verdict.headline, "sentences": verdict.sentences}
+
+
+def _described(found: Evaluation) -> dict[str, Any]:
+    summary = found.summary
+    return {
+        "dataset": found.dataset,
+        "verdict": _verdict(found.verdict),
+        "clips": summary.clip_count,
+        "mirrored_clips": summary.mirrored_count,
+        "frames": summary.frame_count,
+        "seconds": summary.seconds,
+        "rate": summary.rate,
+        "joints": dict(summary.joints),
+        "unit": summary.unit,
+        "settings": dict(summary.settings),
+        "trials": [_finite(row) for row in found.measured.trials.rows()],
+        "notes": found.notes,
+        "failed": dict(found.failed),
+    }
+
+
+def _finite(row: Mapping[str, Any]) -> dict[str, Any]:
+    """JSON has no NaN: what is not known is null."""
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value
+        for name, value in row.items()
+    }
