@@ -17,7 +17,7 @@ from gmr.evaluation.evaluate import Source, evaluate
 from gmr.evaluation.result import Evaluation, Tables
 from gmr.table import Table
 
-__all__ = ["compare", "dataset_names"]
+__all__ = ["compare", "dataset_names", "renamed"]
 
 Progress: TypeAlias = Callable[[str, int, int], object]
 
@@ -56,7 +56,7 @@ def compare(
             )
         except DatasetError as error:
             raise DatasetError(f"{name}: {error}") from error
-        return _renamed(evaluation, name)
+        return renamed(evaluation, name)
 
     return comparison_of([found(source, name) for source, name in zip(given, names, strict=True)])
 
@@ -86,7 +86,7 @@ def _printable(text: str) -> str:
     return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
 
 
-def _renamed(evaluation: Evaluation, name: str) -> Evaluation:
+def renamed(evaluation: Evaluation, name: str) -> Evaluation:
     """The evaluation with another name of its dataset, in its tables too."""
     if evaluation.dataset == name:
         return evaluation
