@@ -47,6 +47,7 @@ class Index:
         exclude: NDArray[np.uint32] | None = None,
         max_cost: float = ...,
         threads: int = 0,
+        weights: NDArray[np.float32] | None = None,
     ) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
         """The ``k`` best frames of each query, best first.
 
@@ -57,6 +58,7 @@ class Index:
             exclude: (Q, 2) first and one past the last frame that is no candidate.
             max_cost: only frames that cost strictly less are hits.
             threads: 0 means all cores; the answer is the same for every number.
+            weights: (1, D) or (Q, D) that squared differences are multiplied by, 0 or more; 1 where left out.
 
         Returns:
             Costs (Q, k), float32, inf where there is no hit; frames (Q, k), -1 where there is no hit.
@@ -177,8 +179,63 @@ class Database:
     def offsets(self, row: int) -> NDArray[np.float32]:
         """(J, 3) of the skeleton of the clip that the row belongs to, metres."""
 
+    def costs_by_group(
+        self,
+        queries: NDArray[np.float32],
+        rows: NDArray[np.int64],
+        weights: NDArray[np.float32] | None = None,
+    ) -> NDArray[np.float32]:
+        """(Q, k, G) what rows (Q, k) cost queries (Q, D) by feature group; NaN for rows below 0."""
+
     def normalize(self, raw: NDArray[np.float32]) -> NDArray[np.float32]:
         """(Q, D) scaled features of (Q, D) raw numbers."""
+
+def save_database(
+    database: Database, path: str, joints: list[str], clips: list[str], notes: dict[str, str]
+) -> None:
+    """Saves a database with the names of its joints and clips, and whatever else by name.
+
+    Raises:
+        ValueError: there is not one name for each.
+        OSError: the file cannot be written.
+    """
+
+def open_database(path: str) -> tuple[Database, list[str], list[str], dict[str, str]]:
+    """What was saved, mapped into memory.
+
+    Raises:
+        ValueError: it is no saved database.
+        OSError: the file cannot be read.
+    """
+
+class Character:
+    """A body that is stepped; places are x, z and heading."""
+
+    def __init__(
+        self,
+        database: Database,
+        place: tuple[float, float, float],
+        search_every: float,
+        exclude_within: int,
+        transition_penalty: float,
+        tags: int,
+        weights: list[float] | None,
+        half_life: float,
+    ) -> None: ...
+    times: list[float]
+    place: tuple[float, float, float]
+    choice: tuple[int, int, float, float]
+    def search_now(self) -> None: ...
+    def step(
+        self, wanted: NDArray[np.float64], dt: float
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32], tuple[float, float, float]]:
+        """Positions (J, 3), bone rotations (J, 4) and place after ``dt`` seconds.
+
+        Raises:
+            ValueError: a shape or a number is out of bounds.
+        """
+
+    def shown(self) -> tuple[NDArray[np.float32], NDArray[np.float32], tuple[float, float, float]]: ...
 
 # --- numbers ---
 
@@ -494,6 +551,7 @@ def run_trials(
     tags: int,
     threads: int,
     progress: Callable[[int, int], object] | None = None,
+    weights: list[float] | None = None,
 ) -> dict[str, NDArray[Any]]:
     """Trials along reference paths; Ctrl-C ends them.
 

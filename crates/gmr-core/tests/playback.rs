@@ -7,6 +7,7 @@ use gmr_core::matching::database::Database;
 use gmr_core::matching::ground::Placement;
 use gmr_core::matching::path::Segment;
 use gmr_core::matching::playback::{HALF_LIFE, Playback, PlaybackError, shown_positions};
+use gmr_core::matching::request::Tracking;
 use gmr_core::matching::trial::{Profile, Progress, Trials, run_trials};
 use synthetic::{RATE, Skeleton, Walk, database, database_at};
 
@@ -158,7 +159,8 @@ fn a_joint_that_only_carries_the_body_changes_nothing() {
         [Profile { segments: vec![Segment { duration: 8.0, speed: 2.0, turn_rate: 0.5 }], record_from: 0.0 }];
     let settings = Default::default();
     let [bare, carried] = [&plain, &carried].map(|database| {
-        let trials = Trials { database, profiles: &profiles, settings: &settings, threads: 1 };
+        let tracking = Tracking::Time;
+        let trials = Trials { database, profiles: &profiles, tracking, settings: &settings, threads: 1 };
         run_trials(&trials, &Progress::default()).unwrap().remove(0)
     });
     let mut jumps = 0;
@@ -197,7 +199,9 @@ fn the_poses_of_a_trial_walk_smoothly_beside_its_log() {
     let segment = |duration, speed| Segment { duration, speed, turn_rate: 0.3 };
     let profiles = [Profile { segments: vec![segment(4.0, 1.5), segment(4.0, 2.5)], record_from: 0.0 }];
     let settings = Default::default();
-    let trials = Trials { database: &database, profiles: &profiles, settings: &settings, threads: 1 };
+    let tracking = Tracking::Time;
+    let trials =
+        Trials { database: &database, profiles: &profiles, tracking, settings: &settings, threads: 1 };
     let log = run_trials(&trials, &Progress::default()).unwrap().remove(0);
     let rows: Vec<u32> = log.steps.iter().map(|step| step.choice.row).collect();
     let placements: Vec<Placement> = log.steps.iter().map(|step| step.placement).collect();

@@ -3,9 +3,10 @@
 mod synthetic;
 
 use gmr_core::matching::builder::DatabaseError;
-use gmr_core::matching::controller::{Settings, Status};
 use gmr_core::matching::database::Database;
+use gmr_core::matching::matcher::{Settings, Status};
 use gmr_core::matching::path::Segment;
+use gmr_core::matching::request::Tracking;
 use gmr_core::matching::trial::{Profile, Progress, TrialLog, Trials, run_trials};
 use proptest::prelude::*;
 use synthetic::{Walk, database, database_scaled_as, database_with_a_past};
@@ -24,7 +25,8 @@ fn log_of(database: &Database, speed: f64, turn_rate: f64) -> TrialLog {
     let profiles =
         [Profile { segments: vec![Segment { duration: 8.0, speed, turn_rate }], record_from: 0.0 }];
     let settings = Settings::default();
-    let trials = Trials { database, profiles: &profiles, settings: &settings, threads: 1 };
+    let tracking = Tracking::Time;
+    let trials = Trials { database, profiles: &profiles, tracking, settings: &settings, threads: 1 };
     run_trials(&trials, &Progress::default()).unwrap().remove(0)
 }
 

@@ -2,11 +2,11 @@
 
 mod synthetic;
 
-use gmr_core::matching::controller::{Settings, Status};
 use gmr_core::matching::database::Database;
 use gmr_core::matching::ground::{Placement, direction};
 use gmr_core::matching::index::Query;
 use gmr_core::matching::index::brute_force;
+use gmr_core::matching::matcher::{Settings, Status};
 use gmr_core::matching::path::{ReferencePath, Segment};
 use gmr_core::matching::request::Tracking;
 use gmr_core::matching::trial::{LoggedStep, Profile, Progress, TrialError, TrialLog, Trials, run_trials};
@@ -22,7 +22,20 @@ fn constant(speed: f64, turn_rate: f64) -> Profile {
 }
 
 fn run(database: &Database, profiles: &[Profile], settings: &Settings) -> Result<Vec<TrialLog>, TrialError> {
-    run_trials(&Trials { database, profiles, settings, threads: 1 }, &Progress::default())
+    run_tracking(Tracking::Time, database, profiles, settings)
+}
+
+fn run_tracking(
+    tracking: Tracking,
+    database: &Database,
+    profiles: &[Profile],
+    settings: &Settings,
+) -> Result<Vec<TrialLog>, TrialError> {
+    run_trials(&Trials { database, profiles, tracking, settings, threads: 1 }, &Progress::default())
+}
+
+fn run_one_tracking(tracking: Tracking, database: &Database, profile: Profile) -> TrialLog {
+    run_tracking(tracking, database, &[profile], &Settings::default()).unwrap().remove(0)
 }
 
 fn run_one(database: &Database, profile: Profile, settings: &Settings) -> TrialLog {
@@ -63,7 +76,7 @@ fn various() -> Vec<Walk> {
 fn a_straight_clip_follows_a_straight_path_at_its_own_speed_without_error() {
     let database = database(&[Walk::default()]);
     for tracking in [Tracking::Time, Tracking::Velocity] {
-        let log = run_one(&database, constant(1.5, 0.0), &Settings { tracking, ..Settings::default() });
+        let log = run_one_tracking(tracking, &database, constant(1.5, 0.0));
         assert_eq!(log.steps.len(), 721);
         assert_eq!(log.recorded_from, 120);
         assert!(worst_offset(&log) < 1e-4, "{}", worst_offset(&log));
@@ -77,8 +90,7 @@ fn a_clip_on_a_circle_follows_that_circle_without_error() {
     for turn_rate in [-1.5, 0.7] {
         let database = database(&[Walk { turn_rate, ..Walk::default() }]);
         for tracking in [Tracking::Time, Tracking::Velocity] {
-            let settings = Settings { tracking, ..Settings::default() };
-            let log = run_one(&database, constant(1.5, turn_rate), &settings);
+            let log = run_one_tracking(tracking, &database, constant(1.5, turn_rate));
             assert!(worst_offset(&log) < 1e-3, "{}", worst_offset(&log));
             let turned = log.steps[720].placement.heading;
             assert!((turned - turn_rate * 12.0).abs() < 1e-4, "{turned}");
@@ -102,10 +114,8 @@ fn of_several_clips_the_one_that_is_asked_for_is_played() {
 fn closed_loop_catches_up_and_open_loop_forgets() {
     let database = database(&various());
     // Nobody walks at 1.9 m/s: a walk that falls behind asks for a run in closed loop, in open loop never.
-    let [closed, open] = [Tracking::Time, Tracking::Velocity].map(|tracking| {
-        let settings = Settings { tracking, ..Settings::default() };
-        worst_offset(&run_one(&database, constant(1.9, 0.0), &settings))
-    });
+    let [closed, open] = [Tracking::Time, Tracking::Velocity]
+        .map(|tracking| worst_offset(&run_one_tracking(tracking, &database, constant(1.9, 0.0))));
     assert!(closed < 1.5 && open > 4.0, "closed {closed}, open {open}");
 }
 
@@ -116,7 +126,13 @@ fn one_and_two_threads_give_the_same_bits() {
         (0..10).map(|i| constant(1.0 + 0.15 * f64::from(i), 0.2 * f64::from(i) - 1.0)).collect();
     let settings = Settings::default();
     let [one, two] = [1, 2].map(|threads| {
-        let trials = Trials { database: &database, profiles: &profiles, settings: &settings, threads };
+        let trials = Trials {
+            database: &database,
+            profiles: &profiles,
+            tracking: Tracking::Time,
+            settings: &settings,
+            threads,
+        };
         format!("{:?}", run_trials(&trials, &Progress::default()).unwrap())
     });
     assert_eq!(one, two);
@@ -175,7 +191,13 @@ fn only_rows_with_all_the_tags_are_jumped_to() {
 fn a_cancelled_run_says_so_and_a_finished_one_counts() {
     let database = database(&[Walk::default()]);
     let (settings, profiles) = (Settings::default(), [constant(1.5, 0.0), constant(1.0, 0.0)]);
-    let trials = Trials { database: &database, profiles: &profiles, settings: &settings, threads: 1 };
+    let trials = Trials {
+        database: &database,
+        profiles: &profiles,
+        tracking: Tracking::Time,
+        settings: &settings,
+        threads: 1,
+    };
     let progress = Progress::default();
     run_trials(&trials, &progress).unwrap();
     assert_eq!(progress.done(), 2);
@@ -198,6 +220,12 @@ fn what_cannot_be_run_is_refused_by_name() {
         (good(), Settings { search_every: 0.0, ..default.clone() }, "a search every 0 s"),
         (good(), Settings { search_every: f64::NAN, ..default.clone() }, "a search every NaN s"),
         (good(), Settings { transition_penalty: -1.0, ..default.clone() }, "a transition penalty of -1"),
+        (
+            good(),
+            Settings { weights: Some(vec![1.0]), ..default.clone() },
+            "weights holds 1 elements where 27",
+        ),
+        (good(), Settings { weights: Some(vec![-1.0; 27]), ..default.clone() }, "weight 0 of query 0 is -1"),
         (
             good(),
             Settings { transition_penalty: f32::INFINITY, ..default.clone() },
@@ -255,6 +283,19 @@ fn settings() -> impl Strategy<Value = Settings> {
             ..Settings::default()
         },
     )
+}
+
+#[test]
+fn weights_of_one_change_no_bit_of_a_log_and_others_do() {
+    let database = database(&various());
+    let profile = || constant(1.9, 0.3);
+    let weighted = |weights: Vec<f32>| {
+        let settings = Settings { weights: Some(weights), ..Settings::default() };
+        format!("{:?}", run_one(&database, profile(), &settings))
+    };
+    let even = format!("{:?}", run_one(&database, profile(), &Settings::default()));
+    assert_eq!(even, weighted(vec![1.0; 27]));
+    assert_ne!(even, weighted((0..27).map(|dim| if dim < 15 { 0.1 } else { 1.0 }).collect()));
 }
 
 #[test]

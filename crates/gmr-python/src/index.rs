@@ -51,7 +51,7 @@ impl PyIndex {
         self.0.candidate_count()
     }
 
-    #[pyo3(signature = (queries, k=1, tags=None, exclude=None, max_cost=f32::INFINITY, threads=0))]
+    #[pyo3(signature = (queries, k=1, tags=None, exclude=None, max_cost=f32::INFINITY, threads=0, weights=None))]
     #[allow(clippy::too_many_arguments)]
     fn search<'py>(
         &self,
@@ -62,15 +62,19 @@ impl PyIndex {
         exclude: Option<PyReadonlyArray2<'py, u32>>,
         max_cost: f32,
         threads: usize,
+        weights: Option<PyReadonlyArray2<'py, f32>>,
     ) -> PyResult<Answers<'py>> {
         let (count, dims) = queries.as_array().dim();
-        if dims != self.0.dims() {
-            let message = format!("queries are of {dims} numbers; this index is of {}", self.0.dims());
+        let widths =
+            [("queries", dims), ("weights", weights.as_ref().map_or(dims, |w| w.as_array().ncols()))];
+        if let Some((what, found)) = widths.into_iter().find(|&(_, width)| width != self.0.dims()) {
+            let message = format!("{what} are of {found} numbers; this index is of {}", self.0.dims());
             return Err(PyValueError::new_err(message));
         }
         let exclude = exclude.map(ranges).transpose()?;
         let batch = Batch {
             queries: contiguous("queries", queries.as_slice())?,
+            weights: weights.as_ref().map(|rows| contiguous("weights", rows.as_slice())).transpose()?,
             count,
             tags: tags.as_ref().map_or(Ok(&[0][..]), |tags| contiguous("tags", tags.as_slice()))?,
             exclude: exclude.as_deref(),

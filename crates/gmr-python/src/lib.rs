@@ -4,6 +4,7 @@
 use pyo3::prelude::*;
 
 mod amc;
+mod character;
 mod forest;
 mod index;
 mod isa;
@@ -12,6 +13,7 @@ mod matching;
 mod numbers;
 mod playback;
 mod rotation;
+mod saved;
 mod skinning;
 mod trial;
 mod watch;
@@ -28,6 +30,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     skinning::register(module)?;
     index::register(module)?;
     matching::register(module)?;
+    saved::register(module)?;
+    character::register(module)?;
     trial::register(module)?;
     playback::register(module)
 }

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use gmr_core::matching::builder::{ClipPoses, DatabaseBuilder};
 use gmr_core::matching::database::Database;
 use gmr_core::matching::features::{Group, Measure, Schema};
+use gmr_core::matching::index::Query;
 use gmr_core::matching::normalization::Normalization;
 use gmr_core::matching::root::{Pair, RootJob, RootTrack, simulation_root, smooth};
-use numpy::ndarray::{ArrayView, Dimension, ShapeBuilder};
+use numpy::ndarray::{Array3, ArrayView, ArrayView1, Dimension, ShapeBuilder, s};
 use numpy::{
     Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1,
     PyReadonlyArray2, PyReadonlyArray3,
@@ -219,13 +220,13 @@ impl PyDatabase {
 
     #[getter]
     fn displacements<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let steps: Vec<[f32; 2]> = self.0.steps().iter().map(|step| step.displacement).collect();
+        let steps: Vec<[f32; 2]> = self.0.steps().map(|step| step.displacement).collect();
         Ok(PyArray2::from_owned_array(py, steps.into()))
     }
 
     #[getter]
     fn turns<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
-        PyArray1::from_iter(py, self.0.steps().iter().map(|step| step.turn))
+        PyArray1::from_iter(py, self.0.steps().map(|step| step.turn))
     }
 
     #[getter]
@@ -275,6 +276,37 @@ impl PyDatabase {
         }
         let rows: Vec<[f32; 3]> = self.0.offsets(row).as_chunks().0.to_vec();
         Ok(PyArray2::from_owned_array(py, rows.into()))
+    }
+
+    /// (Q, k, G) costs of rows (Q, k) by group.
+    #[pyo3(signature = (queries, rows, weights=None))]
+    fn costs_by_group<'py>(
+        &self,
+        py: Python<'py>,
+        queries: PyReadonlyArray2<'py, f32>,
+        rows: PyReadonlyArray2<'py, i64>,
+        weights: Option<PyReadonlyArray2<'py, f32>>,
+    ) -> PyResult<Bound<'py, PyArray3<f32>>> {
+        let (queries, rows) = (queries.as_array(), rows.as_array());
+        let weights = weights.as_ref().map(|weights| weights.as_array());
+        if queries.nrows() != rows.nrows()
+            || weights.is_some_and(|w| ![1, queries.nrows()].contains(&w.nrows()))
+        {
+            return Err(refused("give rows for each query, and one row of weights for all or for each"));
+        }
+        let groups = self.0.schema().groups().len();
+        let mut costs = Array3::from_elem((rows.nrows(), rows.ncols(), groups), f32::NAN);
+        for ((i, k), &row) in rows.indexed_iter().filter(|(_, row)| **row >= 0) {
+            let row = u32::try_from(row).ok().filter(|&row| (row as usize) < self.0.row_count());
+            let row = row.ok_or_else(|| refused(format!("there is no row {}", rows[(i, k)])))?;
+            let features = queries.row(i).to_vec();
+            let own = weights.map(|weights| weights.row(if weights.nrows() == 1 { 0 } else { i }).to_vec());
+            let query = Query { weights: own.as_deref(), ..Query::new(&features) };
+            let mut parts = vec![0.0; groups];
+            self.0.costs_by_group(&query, row, &mut parts).map_err(refused)?;
+            costs.slice_mut(s![i, k, ..]).assign(&ArrayView1::from(&parts));
+        }
+        Ok(costs.into_pyarray(py))
     }
 
     fn normalize<'py>(

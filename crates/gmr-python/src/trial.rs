@@ -1,6 +1,6 @@
 //! Binding of `trial`: many trials at once, their logs as columns.
 
-use gmr_core::matching::controller::Settings;
+use gmr_core::matching::matcher::Settings;
 use gmr_core::matching::path::Segment;
 use gmr_core::matching::trial::{LoggedStep, Profile, Progress, TrialLog, Trials, run_trials};
 use numpy::ndarray::Array2;
@@ -18,6 +18,7 @@ type Request = (Vec<(f64, f64, f64)>, f64);
 #[pyfunction(name = "run_trials")]
 #[pyo3(signature = (
     database, profiles, tracking, search_every, exclude_within, transition_penalty, tags, threads, progress=None,
+    weights=None,
 ))]
 #[allow(clippy::too_many_arguments)]
 fn run<'py>(
@@ -31,11 +32,13 @@ fn run<'py>(
     tags: u32,
     threads: usize,
     progress: Option<Bound<'py, PyAny>>,
+    weights: Option<Vec<f32>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let tracking = tracking.parse().map_err(value_error)?;
-    let settings = Settings { tracking, search_every, exclude_within, transition_penalty, tags };
+    let settings = Settings { search_every, exclude_within, transition_penalty, tags, weights };
     let profiles: Vec<Profile> = profiles.into_iter().map(profile).collect();
-    let trials = Trials { database: &database.0, profiles: &profiles, settings: &settings, threads };
+    let trials =
+        Trials { database: &database.0, profiles: &profiles, tracking, settings: &settings, threads };
     let watch = Progress::default();
     let mut told = 0;
     let mut tell = || match &progress {

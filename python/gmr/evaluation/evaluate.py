@@ -33,7 +33,8 @@ from gmr.evaluation.verdict import verdict
 from gmr.evaluation.words import some_of
 from gmr.formats.folder import read_folder
 from gmr.formats.registry import suffixes
-from gmr.matching.database import Database, named
+from gmr.matching.database import Database
+from gmr.matching.naming import named
 from gmr.matching.prepare import unit_text
 from gmr.matching.trial import Tracking
 from gmr.motion import Motion

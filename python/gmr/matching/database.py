@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from os import PathLike
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,24 +18,17 @@ from gmr import _core
 from gmr.arrays import read_only
 from gmr.body.joints import Joints
 from gmr.errors import DatasetError
+from gmr.matching import saved
 from gmr.matching.assemble import Tags, assemble
+from gmr.matching.naming import named
+from gmr.matching.normalization import Normalization
 from gmr.matching.schema import LOCOMOTION, Schema
 from gmr.matching.survey import Survey, survey
 from gmr.motion import Motion
 from gmr.skeleton import Skeleton
 from gmr.threads import thread_count
 
-__all__ = ["Database", "Normalization"]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Normalization:
-    """How raw features are scaled: ``feature = (raw - offset) / scale``."""
-
-    offset: NDArray[np.float32]
-    """(D,) mean of each number."""
-    scale: NDArray[np.float32]
-    """(D,) mean standard deviation of the number's group, over the group's weight."""
+__all__ = ["Database"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -237,14 +231,26 @@ class Database:
         return self.core.normalize(_rows(raw, "raw features"))
 
     def search(
-        self, queries: ArrayLike, k: int = 1, *, tags: int = 0, threads: int = 0
+        self,
+        queries: ArrayLike,
+        k: int = 1,
+        *,
+        tags: ArrayLike = 0,
+        weights: ArrayLike | None = None,
+        exclude: ArrayLike | None = None,
+        max_cost: float = np.inf,
+        threads: int = 0,
     ) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
         """The nearest candidates of each query: exact, ties to the lowest row.
 
         Args:
             queries: (Q, D), or one of (D,), scaled as :attr:`features` are.
             k: how many.
-            tags: bits that a frame must all carry.
+            tags: bits that a frame must all carry: one number for all queries, or (Q,).
+            weights: what squared differences are multiplied by, 0 or more: (D,) for all queries, or (Q, D).
+                Those of weight 0 are not looked at. :meth:`gmr.matching.Schema.spread` makes them of groups.
+            exclude: (Q, 2) for each query the first and one past the last row that is no candidate.
+            max_cost: only frames that cost less are found.
             threads: 0 means all cores; the answer is the same for every number.
 
         Returns:
@@ -252,15 +258,68 @@ class Database:
             :attr:`clips` and :attr:`frames` translate. Where there are fewer candidates: inf and -1.
 
         Raises:
-            ValueError: a query has another number of features, or one that is not finite; or ``k`` is below
-                0 or above N.
+            ValueError: a query has another number of features, or one that is not finite; a weight is below 0
+                or not finite; or ``k`` is below 0 or above N.
         """
         if not 0 <= k <= len(self):
             raise ValueError(
                 f"{k} nearest rows cannot be found among {len(self)}; give a k from 0 to {len(self)}"
             )
-        bits = np.array([tags], np.uint32)
-        return self.core.index.search(_rows(queries, "queries"), k, bits, threads=thread_count(threads))
+        return self.core.index.search(
+            _rows(queries, "queries"),
+            k,
+            np.atleast_1d(np.asarray(tags, np.uint32)),
+            None if exclude is None else np.ascontiguousarray(exclude, np.uint32),
+            max_cost,
+            thread_count(threads),
+            None if weights is None else _rows(weights, "weights"),
+        )
+
+    def costs_by_group(
+        self, queries: ArrayLike, rows: ArrayLike, *, weights: ArrayLike | None = None
+    ) -> dict[str, NDArray[np.float32]]:
+        """What rows cost queries, feature group by feature group.
+
+        Args:
+            queries: (Q, D), or one of (D,), as in :meth:`search`.
+            rows: (Q, k) rows of the database, as :meth:`search` returns them.
+            weights: as in :meth:`search`.
+
+        Returns:
+            For each group of the schema, by its name, the costs (Q, k); NaN where the row is -1. Over all
+            groups they add up to the cost, but for rounding.
+
+        Raises:
+            ValueError: shapes do not fit, or a row is not there.
+        """
+        given = np.atleast_2d(np.asarray(rows, np.int64))
+        parts = self.core.costs_by_group(
+            _rows(queries, "queries"), given, None if weights is None else _rows(weights, "weights")
+        )
+        return {group.name: parts[..., number] for number, group in enumerate(self.schema.groups)}
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Save the database in a file that :meth:`open` maps into memory; see docs/matching.md.
+
+        A file that is there is replaced once the new one is whole.
+
+        Raises:
+            OSError: the file cannot be written.
+        """
+        saved.save(self, path)
+
+    @classmethod
+    def open(cls, path: str | PathLike[str]) -> Database:
+        """A saved database, mapped into memory: poses are read when they are looked at.
+
+        Searches and trials have the same bits as those of the database that was saved. The index is built
+        again, for this machine, which reads all features once.
+
+        Raises:
+            FormatError: the file is no saved database, or is damaged.
+            OSError: it cannot be read.
+        """
+        return cls(**saved.contents(path))
 
     def __repr__(self) -> str:
         seconds = len(self) / self.rate
@@ -268,30 +327,6 @@ class Database:
             f"Database({len(self.clip_names)} clips, {int(self.mirrored.sum())} of them mirrored, "
             f"{len(self)} frames at {self.rate:g} fps = {seconds:.1f} s, {self.schema.dims} features)"
         )
-
-
-def named(motions: Iterable[Motion] | Mapping[str, Motion]) -> dict[str, Motion]:
-    """Motions by name; those without one are called "motion 1", ..., and a name that repeats gets a
-    number."""
-    if isinstance(motions, Mapping):
-        return {name: _a_motion(name, motion) for name, motion in motions.items()}
-    if isinstance(motions, Motion):
-        raise DatasetError("a database is built of several motions: put this one into a list, [motion]")
-    found: dict[str, Motion] = {}
-    for number, motion in enumerate(motions, start=1):
-        name = base = getattr(motion, "name", None) or f"motion {number}"
-        again = 1
-        while name in found:
-            again += 1
-            name = f"{base} ({again})"
-        found[name] = _a_motion(name, motion)
-    return found
-
-
-def _a_motion(name: str, given: object) -> Motion:
-    if not isinstance(given, Motion):
-        raise TypeError(f"{name}: a motion is needed here, not {given!r:.60}; read files with gmr.read")
-    return given
 
 
 def _notes(seen: Survey, schema: Schema, core: _core.Database) -> tuple[str, ...]:

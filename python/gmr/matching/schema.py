@@ -6,7 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from gmr.errors import DatasetError
+from gmr.listing import quoted
 from gmr.skeleton import Skeleton
 
 __all__ = ["LOCOMOTION", "Group", "Measure", "Schema"]
@@ -86,6 +90,19 @@ class Schema:
             found[group.name] = slice(start, start + group.width)
             start += group.width
         return found
+
+    def spread(self, weights: Mapping[str, float]) -> NDArray[np.float32]:
+        """(D,) weights of a search, from those of groups by their names; groups left out count as ever.
+
+        Raises:
+            DatasetError: no group is called so.
+        """
+        slices, spread = self.slices(), np.ones(self.dims, np.float32)
+        for name, weight in weights.items():
+            if name not in slices:
+                raise DatasetError(f"no feature group is called '{name}'; there are {quoted(slices, 20)}")
+            spread[slices[name]] = weight
+        return spread
 
     def resolve(
         self, skeleton: Skeleton, roles: Mapping[str, int], rate: float

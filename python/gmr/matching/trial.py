@@ -13,7 +13,7 @@ from enum import IntEnum
 from typing import Literal, Self, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gmr import _core
 from gmr.matching.database import Database
@@ -190,6 +190,7 @@ def run_trials(
     exclude_within: int = 20,
     transition_penalty: float = 0.0,
     tags: int = 0,
+    weights: ArrayLike | None = None,
     threads: int = 0,
     progress: Callable[[int, int], object] | None = None,
 ) -> TrialLog:
@@ -208,6 +209,7 @@ def run_trials(
         exclude_within: rows of the playing clip at most this many frames from the next one are not jumped to.
         transition_penalty: added to the cost of every row but the next one; 0 or more.
         tags: bits that every row jumped to carries all of; 0 asks for none.
+        weights: (D,) what squared differences are multiplied by, 0 or more; None: 1.
         threads: 0 for all cores.
         progress: called now and then with the number of trials done and of all trials; what it raises ends
             the run, as Ctrl-C does.
@@ -229,6 +231,7 @@ def run_trials(
         tags,
         thread_count(threads),
         progress,
+        None if weights is None else np.asarray(weights, np.float32).tolist(),
     )
     for column in columns.values():
         column.flags.writeable = False

@@ -128,7 +128,56 @@ pub struct DatabaseBuilder {
     bone_sets: Vec<Vec<f32>>,
     schema: Schema,
     rate: f64,
-    rows: Rows,
+    rows: Growing,
+}
+
+/// What becomes [`Rows`].
+#[derive(Debug, Default)]
+struct Growing {
+    clips: Vec<Clip>,
+    clip_of: Vec<u32>,
+    features: Vec<f32>,
+    candidates: Vec<bool>,
+    tags: Vec<u32>,
+    steps: Vec<[f32; 3]>,
+    ground: Vec<[f64; 2]>,
+    heading: Vec<f64>,
+    positions: Vec<f32>,
+    rotations: Vec<f32>,
+    translations: Vec<f32>,
+}
+
+impl From<Growing> for Rows {
+    fn from(grown: Growing) -> Self {
+        Self {
+            clips: grown.clips,
+            clip_of: grown.clip_of.into(),
+            features: grown.features.into(),
+            candidates: grown.candidates.into(),
+            tags: grown.tags.into(),
+            steps: grown.steps.into(),
+            ground: grown.ground.into(),
+            heading: grown.heading.into(),
+            positions: grown.positions.into(),
+            rotations: grown.rotations.into(),
+            translations: grown.translations.into(),
+        }
+    }
+}
+
+/// Whether clips can be put on this skeleton.
+pub(super) fn check_skeleton(topology: &Topology, translated: &[i32]) -> Result<(), DatabaseError> {
+    let joints = topology.joint_count();
+    if let Some(&joint) = translated.iter().find(|&&joint| joint < 0 || joint as usize >= joints) {
+        return Err(ShapeError {
+            what: "joints",
+            expected: (joint as usize).saturating_add(1),
+            found: joints,
+        }
+        .into());
+    }
+    let fixed = (0..joints).find(|&j| topology.parents()[j] != NONE && topology.world_slots()[j] == NONE);
+    fixed.map_or(Ok(()), |joint| Err(DatabaseError::FixedBone { joint }))
 }
 
 impl DatabaseBuilder {
@@ -142,21 +191,14 @@ impl DatabaseBuilder {
         schema: Schema,
         rate: f64,
     ) -> Result<Self, DatabaseError> {
-        let joints = topology.joint_count();
-        if let Some(&joint) = translated.iter().find(|&&joint| joint < 0 || joint as usize >= joints) {
-            return Err(ShapeError { what: "joints", expected: joint as usize + 1, found: joints }.into());
-        }
-        let fixed = (0..joints).find(|&j| topology.parents()[j] != NONE && topology.world_slots()[j] == NONE);
-        if let Some(joint) = fixed {
-            return Err(DatabaseError::FixedBone { joint });
-        }
+        check_skeleton(&topology, &translated)?;
         let world_slots = topology
             .slot_order()
             .iter()
             .map(|&slot| slot as usize)
             .filter(|&slot| topology.slot_parents()[slot] == NONE)
             .collect();
-        let rows = Rows::default();
+        let rows = Growing::default();
         Ok(Self { topology, translated, world_slots, bone_sets: Vec::new(), schema, rate, rows })
     }
 
@@ -190,7 +232,7 @@ impl DatabaseBuilder {
         } else {
             self.rows.tags.extend(clip.tags);
         }
-        self.rows.steps.extend(steps(clip.root));
+        self.rows.steps.extend(steps(clip.root).into_iter().map(<[f32; 3]>::from));
         self.rows.ground.extend(&clip.root.ground);
         self.rows.heading.extend(&clip.root.heading);
         let bones = self.bone_set(clip.offsets);
@@ -220,13 +262,13 @@ impl DatabaseBuilder {
         Ok(Database {
             topology: self.topology,
             translated: self.translated,
-            bone_sets: self.bone_sets,
+            bone_sets: self.bone_sets.concat().into(),
             schema: self.schema,
             rate: self.rate,
             normalization,
             constant_groups,
             index: Arc::new(index),
-            rows: Arc::new(self.rows),
+            rows: Arc::new(self.rows.into()),
             left: None,
         })
     }

@@ -2,10 +2,12 @@
 //!
 //! Rows are frames at [`Database::rate`]. Lengths are metres, Y is up, forward is +Z, left is +X. Poses are kept in the
 //! character's frame: origin at the row's simulation root on the ground, turned so that the root's heading is +Z.
-//! [`super::builder`] makes it.
+//! [`super::builder`] makes it; `super::file` saves it and maps it back into memory.
 
+use crate::error::ShapeError;
+use crate::matching::column::Column;
 use crate::matching::features::Schema;
-use crate::matching::index::Index;
+use crate::matching::index::{Index, Query};
 use crate::matching::normalization::Normalization;
 use crate::matching::subset::Left;
 use crate::skeleton::Topology;
@@ -30,12 +32,25 @@ pub struct Step {
     pub turn: f32,
 }
 
+impl From<[f32; 3]> for Step {
+    fn from([x, z, turn]: [f32; 3]) -> Self {
+        Self { displacement: [x, z], turn }
+    }
+}
+
+impl From<Step> for [f32; 3] {
+    fn from(Step { displacement: [x, z], turn }: Step) -> Self {
+        [x, z, turn]
+    }
+}
+
 /// All clips, their features and their poses; immutable once built.
 #[derive(Debug, Clone)]
 pub struct Database {
     pub(super) topology: Topology,
     pub(super) translated: Vec<i32>,
-    pub(super) bone_sets: Vec<Vec<f32>>,
+    /// `(B, J, 3)`.
+    pub(super) bone_sets: Column<f32>,
     pub(super) schema: Schema,
     pub(super) rate: f64,
     pub(super) normalization: Normalization,
@@ -47,19 +62,20 @@ pub struct Database {
 }
 
 /// Everything that is kept per row, N rows.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Rows {
     pub(super) clips: Vec<Clip>,
-    pub(super) clip_of: Vec<u32>,
-    pub(super) features: Vec<f32>,
-    pub(super) candidates: Vec<bool>,
-    pub(super) tags: Vec<u32>,
-    pub(super) steps: Vec<Step>,
-    pub(super) ground: Vec<[f64; 2]>,
-    pub(super) heading: Vec<f64>,
-    pub(super) positions: Vec<f32>,
-    pub(super) rotations: Vec<f32>,
-    pub(super) translations: Vec<f32>,
+    pub(super) clip_of: Column<u32>,
+    pub(super) features: Column<f32>,
+    pub(super) candidates: Column<bool>,
+    pub(super) tags: Column<u32>,
+    /// Displacement and turn.
+    pub(super) steps: Column<[f32; 3]>,
+    pub(super) ground: Column<[f64; 2]>,
+    pub(super) heading: Column<f64>,
+    pub(super) positions: Column<f32>,
+    pub(super) rotations: Column<f32>,
+    pub(super) translations: Column<f32>,
 }
 
 impl Database {
@@ -153,7 +169,7 @@ impl Database {
     /// Which rows may be jumped to (N): those whose clip holds all that their features look at.
     #[must_use]
     pub fn candidates(&self) -> &[bool] {
-        self.left.as_ref().map_or(&self.rows.candidates, |left| &left.candidates)
+        self.left.as_ref().map_or(&self.rows.candidates, |left| &left.candidates[..])
     }
 
     /// Tag bits of each row (N).
@@ -164,14 +180,14 @@ impl Database {
 
     /// What the root does from each row to the next (N). The last row of a clip repeats the step before it.
     #[must_use]
-    pub fn steps(&self) -> &[Step] {
-        &self.rows.steps
+    pub fn steps(&self) -> impl ExactSizeIterator<Item = Step> + '_ {
+        self.rows.steps.iter().map(|&step| step.into())
     }
 
     /// What the root does from `row` to the next one.
     #[must_use]
     pub fn step(&self, row: u32) -> Step {
-        self.rows.steps[row as usize]
+        self.rows.steps[row as usize].into()
     }
 
     /// Ground position of the simulation root in its clip's own world (N), metres.
@@ -196,6 +212,27 @@ impl Database {
     #[must_use]
     pub fn position_row(&self, row: u32) -> &[f32] {
         row_of(&self.rows.positions, row, 3 * self.joint_count())
+    }
+
+    /// What a row costs a query by feature group, in the schema's order: each group's part of the cost, its dimensions
+    /// summed in their order. The parts add up to the cost, but for rounding.
+    ///
+    /// `query.features` holds D numbers; of the rest of the query only the weights are looked at.
+    ///
+    /// # Errors
+    /// When features, weights or `costs` are not as many as dimensions and groups.
+    pub fn costs_by_group(&self, query: &Query, row: u32, costs: &mut [f32]) -> Result<(), ShapeError> {
+        let (dims, groups) = (self.dims(), self.schema.groups().len());
+        ShapeError::check("query features", dims, query.features.len())?;
+        ShapeError::check("query weights", dims, query.weights.map_or(dims, <[f32]>::len))?;
+        ShapeError::check("costs by group", groups, costs.len())?;
+        for (group, cost) in costs.iter_mut().enumerate() {
+            let range = self.schema.range(group);
+            let weights = query.weights.map(|weights| &weights[range.clone()]);
+            let part = Query { weights, ..Query::new(&query.features[range.clone()]) };
+            *cost = part.cost_of(&self.feature_row(row)[range]);
+        }
+        Ok(())
     }
 
     /// Local slot quaternions `(N, S, 4)`, xyzw; the slots that stand under the world are in the character's frame.
@@ -250,7 +287,7 @@ impl Database {
     #[must_use]
     pub fn offsets(&self, row: u32) -> &[f32] {
         let clip = &self.rows.clips[self.rows.clip_of[row as usize] as usize];
-        &self.bone_sets[clip.bones as usize]
+        row_of(&self.bone_sets, clip.bones, 3 * self.joint_count())
     }
 }
 

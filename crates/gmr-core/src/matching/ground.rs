@@ -7,6 +7,8 @@ use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
 use glam::DVec2;
 
+use super::database::Step;
+
 /// A point of the ground and the heading there.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Placement {
@@ -41,6 +43,13 @@ impl Placement {
     pub fn unrotate(&self, world: DVec2) -> DVec2 {
         let forward = self.direction();
         DVec2::new(left_of(forward).dot(world), forward.dot(world))
+    }
+
+    /// After a share (0 to 1) of a database row's step.
+    #[must_use]
+    pub fn moved(&self, step: Step, share: f64) -> Self {
+        let [x, z] = step.displacement.map(f64::from);
+        self.advanced(DVec2::new(x, z) * share, f64::from(step.turn) * share)
     }
 
     /// After a step of `displacement`, given in this placement's frame, and a turn.

@@ -1,13 +1,20 @@
-//! Motion matching: simulation root, features, exact nearest-neighbour index, controller and trials.
+//! Motion matching: simulation root, features, exact nearest-neighbour index, trials, and
+//! [`character::Character`], which a game steps.
 
+mod body;
 pub mod builder;
 pub mod carriers;
+pub mod character;
+mod column;
 pub mod controller;
 pub mod database;
 pub mod features;
+#[cfg(all(feature = "file", target_endian = "little"))]
+pub mod file;
 pub mod ground;
 pub mod index;
 pub mod inertialization;
+pub mod matcher;
 pub mod normalization;
 pub mod path;
 pub mod playback;

@@ -4,6 +4,8 @@
 //! the room. So carriers, and the joints that they carry, are roots here, placed in the character's frame; the bones
 //! below keep their lengths.
 
+use std::ops::Deref;
+
 use glam::{DQuat, DVec3, Quat, Vec3};
 
 use super::carriers::carried;
@@ -13,9 +15,9 @@ use crate::error::TopologyError;
 use crate::skeleton::{NONE, Topology};
 
 /// Reads local poses of rows on a skeleton whose carriers are roots.
-#[derive(Debug)]
-pub(super) struct PoseReader<'a> {
-    database: &'a Database,
+#[derive(Debug, Clone)]
+pub(super) struct PoseReader<D> {
+    database: D,
     topology: Topology,
     /// Per joint, its number among the translated ones.
     translated: Vec<Option<usize>>,
@@ -23,8 +25,8 @@ pub(super) struct PoseReader<'a> {
     carriers: Vec<Vec<usize>>,
 }
 
-impl<'a> PoseReader<'a> {
-    pub(super) fn new(database: &'a Database) -> Result<Self, TopologyError> {
+impl<D: Deref<Target = Database>> PoseReader<D> {
+    pub(super) fn new(database: D) -> Result<Self, TopologyError> {
         let whole = database.topology();
         let mut translated = vec![None; whole.joint_count()];
         for (number, &joint) in database.translated().iter().enumerate() {
@@ -36,7 +38,11 @@ impl<'a> PoseReader<'a> {
         }
         let topology = Topology::new(&parents, &slots, whole.slot_count())?;
         let carriers = (0..whole.slot_count()).map(|slot| carriers(whole, &topology, slot)).collect();
-        Ok(Self { database, topology, translated, carriers })
+        Ok(Self { topology, translated, carriers, database })
+    }
+
+    pub(super) fn database(&self) -> &Database {
+        &self.database
     }
 
     /// The skeleton that the rotations and vectors are of: the database's, its carriers and what they carry being
@@ -59,6 +65,24 @@ impl<'a> PoseReader<'a> {
             None => (self.database.offsets(row), joint),
         };
         Vec3::from_slice(&vectors[3 * number..]).as_dvec3()
+    }
+
+    /// As [`PoseReader::rotation`], a share of the way to the next row later.
+    pub(super) fn rotation_between(&self, row: u32, share: f64, slot: usize) -> DQuat {
+        let here = self.rotation(row, slot);
+        match self.database.next_row(row) {
+            Some(next) if share > 0.0 => here.lerp(self.rotation(next, slot), share),
+            _ => here,
+        }
+    }
+
+    /// As [`PoseReader::vector`], a share of the way to the next row later.
+    pub(super) fn vector_between(&self, row: u32, share: f64, joint: usize) -> DVec3 {
+        let here = self.vector(row, joint);
+        match self.database.next_row(row) {
+            Some(next) if share > 0.0 => here.lerp(self.vector(next, joint), share),
+            _ => here,
+        }
     }
 
     pub(super) fn turning(&self, row: u32, slot: usize) -> Turning {

@@ -3,11 +3,13 @@
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use super::controller::{Choice, Controller, Settings};
+use super::controller::Controller;
 use super::database::Database;
 use super::ground::Placement;
 use super::index::IndexError;
+use super::matcher::{Choice, Settings, SettingsError};
 use super::path::{PathError, ReferencePath, Segment};
+use super::request::Tracking;
 use super::start::Starts;
 use crate::parallel::for_each_chunk;
 
@@ -49,6 +51,8 @@ pub struct Trials<'a> {
     pub database: &'a Database,
     /// What is asked, one a trial.
     pub profiles: &'a [Profile],
+    /// What queries aim at.
+    pub tracking: Tracking,
     /// How it is searched.
     pub settings: &'a Settings,
     /// Threads to share the trials among; 0 means all cores. The logs do not depend on it.
@@ -84,9 +88,9 @@ impl Progress {
 /// # Errors
 /// When a setting or a profile is out of bounds, no candidate carries the tags, or the trials were cancelled.
 pub fn run_trials(trials: &Trials, progress: &Progress) -> Result<Vec<TrialLog>, TrialError> {
-    trials.check()?;
+    trials.settings.check(trials.database.dims()).map_err(TrialError::Settings)?;
     let paths = trials.paths()?;
-    let starts = Starts::new(trials.database, trials.settings.tags);
+    let starts = Starts::new(trials.database, trials.settings);
     let mut logs: Vec<Result<TrialLog, TrialError>> = vec![Err(TrialError::Cancelled); paths.len()];
     for_each_chunk(&mut logs, 1, trials.threads, |number, log| {
         log[0] = trials.run(number, &paths[number], &starts, progress);
@@ -96,17 +100,6 @@ pub fn run_trials(trials: &Trials, progress: &Progress) -> Result<Vec<TrialLog>,
 }
 
 impl Trials<'_> {
-    fn check(&self) -> Result<(), TrialError> {
-        let Settings { search_every, transition_penalty, .. } = *self.settings;
-        if !(search_every > 0.0 && search_every <= LONGEST_SEARCH_INTERVAL) {
-            return Err(TrialError::SearchEvery { found: search_every });
-        }
-        if !(transition_penalty >= 0.0 && transition_penalty.is_finite()) {
-            return Err(TrialError::TransitionPenalty { found: transition_penalty });
-        }
-        Ok(())
-    }
-
     fn paths(&self) -> Result<Vec<ReferencePath>, TrialError> {
         let path = |(trial, profile): (usize, &Profile)| {
             let path = ReferencePath::new(Placement::default(), &profile.segments)
@@ -126,7 +119,7 @@ impl Trials<'_> {
         progress: &Progress,
     ) -> Result<TrialLog, TrialError> {
         let steps_in = |seconds: f64| (seconds * self.database.rate()).round() as usize;
-        let mut controller = Controller::new(self.database, self.settings, path, starts)
+        let mut controller = Controller::new(self.database, self.tracking, self.settings, path, starts)
             .ok_or(TrialError::NoCandidates { tags: self.settings.tags })?;
         let last = steps_in(path.duration());
         let mut steps = Vec::with_capacity(last + 1);
@@ -142,8 +135,6 @@ impl Trials<'_> {
         Ok(TrialLog { steps, recorded_from: steps_in(self.profiles[trial].record_from).min(last) })
     }
 }
-
-const LONGEST_SEARCH_INTERVAL: f64 = 3600.0;
 
 /// Why trials gave no logs.
 #[derive(Debug, Clone, PartialEq)]
@@ -162,16 +153,8 @@ pub enum TrialError {
         /// The second at which it should begin.
         found: f64,
     },
-    /// Time between searches that is no time.
-    SearchEvery {
-        /// The seconds asked for.
-        found: f64,
-    },
-    /// A penalty that is negative or not finite.
-    TransitionPenalty {
-        /// The penalty asked for.
-        found: f32,
-    },
+    /// Settings by which nothing can be searched.
+    Settings(SettingsError),
     /// No row that may be jumped to carries all the tags.
     NoCandidates {
         /// The tag bits asked for.
@@ -197,13 +180,7 @@ impl fmt::Display for TrialError {
                 "trial {trial}: recording from {found} s is not within the trial; use 0 or more, and less than \
                  the sum of its segments' durations"
             ),
-            Self::SearchEvery { found } => write!(
-                f,
-                "a search every {found} s is not possible; use more than 0 s, at most {LONGEST_SEARCH_INTERVAL} s"
-            ),
-            Self::TransitionPenalty { found } => {
-                write!(f, "a transition penalty of {found} is not possible; use a finite number, 0 or more")
-            }
+            Self::Settings(error) => error.fmt(f),
             Self::NoCandidates { tags } => {
                 write!(f, "no frame that may be jumped to carries all of the tag bits {tags:#b}")
             }

@@ -4,6 +4,7 @@ use std::arch::x86_64::*;
 
 use super::Query;
 use super::best::Best;
+use super::metric::Metric;
 use super::traverse::{self, Kernel};
 use super::tree::{Edges, Lanes, Tree, edges};
 use crate::Isa;
@@ -18,15 +19,15 @@ impl Avx2 {
     }
 
     /// As [`traverse::search`].
-    pub(super) fn search(self, tree: &Tree<8>, query: &Query, best: &mut impl Best) {
+    pub(super) fn search<M: Metric>(self, tree: &Tree<8>, query: &Query, best: &mut impl Best) {
         // SAFETY: a value of this type is only made where the machine has the instructions.
-        unsafe { search(self, tree, query, best) }
+        unsafe { search::<M>(self, tree, query, best) }
     }
 }
 
 #[target_feature(enable = "avx2,fma")]
-fn search(kernel: Avx2, tree: &Tree<8>, query: &Query, best: &mut impl Best) {
-    traverse::search(kernel, tree, query, best);
+fn search<M: Metric>(kernel: Avx2, tree: &Tree<8>, query: &Query, best: &mut impl Best) {
+    traverse::search::<8, _, M>(kernel, tree, query, best);
 }
 
 impl Kernel<8> for Avx2 {
@@ -39,33 +40,41 @@ impl Kernel<8> for Avx2 {
     }
 
     #[inline(always)]
-    fn add_costs(self, sums: __m256, q: f32, row: &Lanes<8>) -> __m256 {
+    fn difference(self, q: f32, row: &Lanes<8>) -> __m256 {
         // SAFETY: see `Avx2::search`; the load reads the 8 numbers of `row`.
-        unsafe {
-            let difference = _mm256_sub_ps(_mm256_set1_ps(q), _mm256_loadu_ps(row.as_ptr()));
-            _mm256_add_ps(sums, _mm256_mul_ps(difference, difference))
-        }
+        unsafe { _mm256_sub_ps(_mm256_set1_ps(q), _mm256_loadu_ps(row.as_ptr())) }
     }
 
     #[inline(always)]
-    fn add_distances(self, sums: __m256, q: f32, row: &Lanes<8>) -> __m256 {
-        // SAFETY: see `Avx2::search`; the load reads the 8 numbers of `row`.
-        unsafe {
-            let difference = _mm256_sub_ps(_mm256_set1_ps(q), _mm256_loadu_ps(row.as_ptr()));
-            _mm256_fmadd_ps(difference, difference, sums)
-        }
-    }
-
-    #[inline(always)]
-    fn add_bounds(self, sums: __m256, q: f32, edges: &Edges<8>) -> __m256 {
+    fn gap(self, q: f32, edges: &Edges<8>) -> __m256 {
         // SAFETY: see `Avx2::search`; the load reads the 8 pairs of `edges`.
         unsafe {
             let q = _mm256_set1_ps(q);
             let edges = _mm256_loadu_si256(edges.as_ptr().cast());
             let low = _mm256_castsi256_ps(_mm256_slli_epi32::<16>(edges));
             let high = _mm256_castsi256_ps(_mm256_and_si256(edges, _mm256_set1_epi32(edges::UPPER as i32)));
-            let difference = _mm256_sub_ps(q, _mm256_min_ps(_mm256_max_ps(q, low), high));
-            _mm256_fmadd_ps(difference, difference, sums)
+            _mm256_sub_ps(q, _mm256_min_ps(_mm256_max_ps(q, low), high))
+        }
+    }
+
+    #[inline(always)]
+    fn add_squares(self, sums: __m256, difference: __m256) -> __m256 {
+        // SAFETY: see `Avx2::search`.
+        unsafe { _mm256_add_ps(sums, _mm256_mul_ps(difference, difference)) }
+    }
+
+    #[inline(always)]
+    fn add_squares_fused(self, sums: __m256, difference: __m256) -> __m256 {
+        // SAFETY: see `Avx2::search`.
+        unsafe { _mm256_fmadd_ps(difference, difference, sums) }
+    }
+
+    #[inline(always)]
+    fn add_weighted_squares(self, sums: __m256, weight: f32, difference: __m256) -> __m256 {
+        // SAFETY: see `Avx2::search`.
+        unsafe {
+            let squares = _mm256_mul_ps(difference, difference);
+            _mm256_add_ps(sums, _mm256_mul_ps(_mm256_set1_ps(weight), squares))
         }
     }
 

@@ -4,6 +4,7 @@ use std::arch::x86_64::*;
 
 use super::Query;
 use super::best::Best;
+use super::metric::Metric;
 use super::traverse::{self, Kernel};
 use super::tree::{Edges, Lanes, Tree, edges};
 use crate::Isa;
@@ -18,15 +19,15 @@ impl Avx512 {
     }
 
     /// As [`traverse::search`].
-    pub(super) fn search(self, tree: &Tree<16>, query: &Query, best: &mut impl Best) {
+    pub(super) fn search<M: Metric>(self, tree: &Tree<16>, query: &Query, best: &mut impl Best) {
         // SAFETY: a value of this type is only made where the machine has the instructions.
-        unsafe { search(self, tree, query, best) }
+        unsafe { search::<M>(self, tree, query, best) }
     }
 }
 
 #[target_feature(enable = "avx512f")]
-fn search(kernel: Avx512, tree: &Tree<16>, query: &Query, best: &mut impl Best) {
-    traverse::search(kernel, tree, query, best);
+fn search<M: Metric>(kernel: Avx512, tree: &Tree<16>, query: &Query, best: &mut impl Best) {
+    traverse::search::<16, _, M>(kernel, tree, query, best);
 }
 
 impl Kernel<16> for Avx512 {
@@ -39,33 +40,41 @@ impl Kernel<16> for Avx512 {
     }
 
     #[inline(always)]
-    fn add_costs(self, sums: __m512, q: f32, row: &Lanes<16>) -> __m512 {
+    fn difference(self, q: f32, row: &Lanes<16>) -> __m512 {
         // SAFETY: see `Avx512::search`; the load reads the 16 numbers of `row`.
-        unsafe {
-            let difference = _mm512_sub_ps(_mm512_set1_ps(q), _mm512_loadu_ps(row.as_ptr()));
-            _mm512_add_ps(sums, _mm512_mul_ps(difference, difference))
-        }
+        unsafe { _mm512_sub_ps(_mm512_set1_ps(q), _mm512_loadu_ps(row.as_ptr())) }
     }
 
     #[inline(always)]
-    fn add_distances(self, sums: __m512, q: f32, row: &Lanes<16>) -> __m512 {
-        // SAFETY: see `Avx512::search`; the load reads the 16 numbers of `row`.
-        unsafe {
-            let difference = _mm512_sub_ps(_mm512_set1_ps(q), _mm512_loadu_ps(row.as_ptr()));
-            _mm512_fmadd_ps(difference, difference, sums)
-        }
-    }
-
-    #[inline(always)]
-    fn add_bounds(self, sums: __m512, q: f32, edges: &Edges<16>) -> __m512 {
+    fn gap(self, q: f32, edges: &Edges<16>) -> __m512 {
         // SAFETY: see `Avx512::search`; the load reads the 16 pairs of `edges`.
         unsafe {
             let q = _mm512_set1_ps(q);
             let edges = _mm512_loadu_si512(edges.as_ptr().cast());
             let low = _mm512_castsi512_ps(_mm512_slli_epi32::<16>(edges));
             let high = _mm512_castsi512_ps(_mm512_and_si512(edges, _mm512_set1_epi32(edges::UPPER as i32)));
-            let difference = _mm512_sub_ps(q, _mm512_min_ps(_mm512_max_ps(q, low), high));
-            _mm512_fmadd_ps(difference, difference, sums)
+            _mm512_sub_ps(q, _mm512_min_ps(_mm512_max_ps(q, low), high))
+        }
+    }
+
+    #[inline(always)]
+    fn add_squares(self, sums: __m512, difference: __m512) -> __m512 {
+        // SAFETY: see `Avx512::search`.
+        unsafe { _mm512_add_ps(sums, _mm512_mul_ps(difference, difference)) }
+    }
+
+    #[inline(always)]
+    fn add_squares_fused(self, sums: __m512, difference: __m512) -> __m512 {
+        // SAFETY: see `Avx512::search`.
+        unsafe { _mm512_fmadd_ps(difference, difference, sums) }
+    }
+
+    #[inline(always)]
+    fn add_weighted_squares(self, sums: __m512, weight: f32, difference: __m512) -> __m512 {
+        // SAFETY: see `Avx512::search`.
+        unsafe {
+            let squares = _mm512_mul_ps(difference, difference);
+            _mm512_add_ps(sums, _mm512_mul_ps(_mm512_set1_ps(weight), squares))
         }
     }
 

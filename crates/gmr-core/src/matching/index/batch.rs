@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::error::first_not_finite;
+use super::error::{check_weights, first_not_finite};
 use super::{Hit, Index, IndexError, Query};
 use crate::error::ShapeError;
 use crate::parallel::for_each_chunk;
@@ -14,6 +14,8 @@ pub struct Batch<'a> {
     pub queries: &'a [f32],
     /// How many queries there are.
     pub count: usize,
+    /// What squared differences are multiplied by: none, one row of dims numbers for all queries, or one a query.
+    pub weights: Option<&'a [f32]>,
     /// Bits that a frame must all carry: one word for all queries, or one a query.
     pub tags: &'a [u32],
     /// Frames that are no candidates: none, or one range a query.
@@ -39,6 +41,13 @@ impl Batch<'_> {
         if let Some(exclude) = self.exclude {
             ShapeError::check("exclude", self.count, exclude.len())?;
         }
+        if let Some(weights) = self.weights {
+            if weights.len() != dims {
+                ShapeError::check("weights", self.count.saturating_mul(dims), weights.len())?;
+            }
+            let mut rows = weights.chunks_exact(dims).enumerate();
+            rows.try_for_each(|(query, row)| check_weights(row, query))?;
+        }
         if self.max_cost.is_nan() {
             return Err(IndexError::MaxCost);
         }
@@ -53,6 +62,9 @@ impl Batch<'_> {
     fn query(&self, i: usize, dims: usize) -> Query<'_> {
         Query {
             features: &self.queries[i * dims..][..dims],
+            weights: self
+                .weights
+                .map(|rows| if rows.len() == dims { rows } else { &rows[i * dims..][..dims] }),
             tags: if self.tags.len() == 1 { self.tags[0] } else { self.tags[i] },
             exclude: self.exclude.map_or(0..0, |exclude| exclude[i].clone()),
             max_cost: self.max_cost,

@@ -14,6 +14,18 @@ pub fn cost(query: &[f32], row: &[f32]) -> f32 {
     })
 }
 
+/// As [`cost`], each square times the weight of its dimension, that product rounded too; dimensions of weight 0 are
+/// left out.
+#[must_use]
+#[inline]
+pub fn weighted_cost(query: &[f32], weights: &[f32], row: &[f32]) -> f32 {
+    let terms = query.iter().zip(weights).zip(row).filter(|((_, weight), _)| **weight > 0.0);
+    terms.fold(0.0, |sum, ((q, weight), x)| {
+        let difference = q - x;
+        sum + weight * (difference * difference)
+    })
+}
+
 /// The best of all frames for which `candidates` holds: what [`super::Index::search`] must find.
 ///
 /// `features` holds frames x `query.features.len()` numbers, `tags` one word a frame.
@@ -45,7 +57,7 @@ fn admitted(
 ) -> impl Iterator<Item = Hit> {
     let rows = features.chunks_exact(query.features.len().max(1));
     rows.enumerate().filter_map(move |(i, row)| {
-        let hit = Hit { frame: i as u32, cost: cost(query.features, row) };
+        let hit = Hit { frame: i as u32, cost: query.cost_of(row) };
         let admitted = candidates[i] && query.admits(hit.frame, tags.map_or(0, |tags| tags[i]));
         (admitted && hit.cost < query.max_cost).then_some(hit)
     })

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::Query;
 use crate::Isa;
 use crate::error::ShapeError;
 
@@ -35,6 +36,15 @@ pub enum IndexError {
         /// What stands there.
         found: f32,
     },
+    /// A weight is negative, NaN or infinite.
+    Weight {
+        /// Row of the weights (0 for a single one).
+        query: usize,
+        /// Column of the weights.
+        dimension: usize,
+        /// What stands there.
+        found: f32,
+    },
     /// The cost that hits must stay below is NaN.
     MaxCost,
     /// This machine cannot run what the index was to be built for.
@@ -58,6 +68,9 @@ impl fmt::Display for IndexError {
             ),
             Self::Query { query, dimension, found } => {
                 write!(f, "feature {dimension} of query {query} is {found}; give a finite number")
+            }
+            Self::Weight { query, dimension, found } => {
+                write!(f, "weight {dimension} of query {query} is {found}; give a finite number, 0 or more")
             }
             Self::MaxCost => {
                 write!(f, "the cost to stay below is NaN; give a number, or infinity for no limit")
@@ -109,12 +122,26 @@ pub(super) fn check_rows(
 }
 
 /// Checks one query of an index with `dims` dimensions.
-pub(super) fn check_query(features: &[f32], dims: usize, max_cost: f32) -> Result<(), IndexError> {
+pub(super) fn check_query(query: &Query, dims: usize, max_cost: f32) -> Result<(), IndexError> {
+    let features = query.features;
     ShapeError::check("query features", dims, features.len())?;
+    if let Some(weights) = query.weights {
+        ShapeError::check("query weights", dims, weights.len())?;
+        check_weights(weights, 0)?;
+    }
     if let Some(dimension) = first_not_finite(features) {
         return Err(IndexError::Query { query: 0, dimension, found: features[dimension] });
     }
     if max_cost.is_nan() { Err(IndexError::MaxCost) } else { Ok(()) }
+}
+
+/// Checks the weights of the query of that number.
+pub(in super::super) fn check_weights(weights: &[f32], query: usize) -> Result<(), IndexError> {
+    let is_weight = |weight: f32| weight >= 0.0 && weight.is_finite();
+    match weights.iter().position(|&weight| !is_weight(weight)) {
+        Some(dimension) => Err(IndexError::Weight { query, dimension, found: weights[dimension] }),
+        None => Ok(()),
+    }
 }
 
 /// Where the first NaN or infinity stands.

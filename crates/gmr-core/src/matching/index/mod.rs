@@ -1,7 +1,8 @@
 //! Exact nearest neighbour in squared distance over the feature rows of a motion database.
 //!
-//! The cost of a frame is the sum, over the dimensions in their order, of `(q_d - x_d)^2` in `f32`, each step
-//! rounded by itself ([`brute_force::cost`]). The best frame has the lowest cost; ties go to the lowest frame index.
+//! The cost of a frame is the sum, over the dimensions in their order, of `(q_d - x_d)^2`, or of `w_d (q_d - x_d)^2`
+//! where the query has weights, in `f32`, each step rounded by itself ([`brute_force::cost`],
+//! [`brute_force::weighted_cost`]). The best frame has the lowest cost; ties go to the lowest frame index.
 //! Every instruction set and every thread count gives the same bits.
 
 use std::ops::Range;
@@ -16,6 +17,7 @@ mod best;
 pub mod brute_force;
 mod build;
 mod error;
+mod metric;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 mod scalar;
@@ -30,7 +32,9 @@ pub use error::IndexError;
 use crate::Isa;
 use best::{Best, Nearest, Ranked};
 use build::Rows;
+pub(super) use error::check_weights;
 use error::{check_query, check_rows};
+use metric::{Even, Metric, Weighted};
 use tree::Tree;
 
 /// A frame and what it costs.
@@ -58,6 +62,9 @@ impl Hit {
 pub struct Query<'a> {
     /// One number a dimension, finite.
     pub features: &'a [f32],
+    /// What the squared difference of each dimension is multiplied by, finite and not below 0; `None`: all by 1,
+    /// which is faster. Dimensions of weight 0 are left out.
+    pub weights: Option<&'a [f32]>,
     /// Bits that a frame must all carry; 0 asks for none.
     pub tags: u32,
     /// Frames that are no candidates for this query, such as the neighbourhood of the one now playing.
@@ -70,7 +77,16 @@ impl<'a> Query<'a> {
     /// Looks for `features` among all candidates.
     #[must_use]
     pub fn new(features: &'a [f32]) -> Self {
-        Self { features, tags: 0, exclude: 0..0, max_cost: f32::INFINITY }
+        Self { features, weights: None, tags: 0, exclude: 0..0, max_cost: f32::INFINITY }
+    }
+
+    /// What a row of features costs, tags and exclusion aside.
+    #[must_use]
+    pub fn cost_of(&self, row: &[f32]) -> f32 {
+        match self.weights {
+            None => brute_force::cost(self.features, row),
+            Some(weights) => brute_force::weighted_cost(self.features, weights, row),
+        }
     }
 
     /// Whether a frame with these tags may be an answer.
@@ -177,9 +193,9 @@ impl Index {
     /// The best frame below `query.max_cost`, or none.
     ///
     /// # Errors
-    /// When the query is not of `dims` finite numbers, or `max_cost` is NaN.
+    /// When the query is not of `dims` finite numbers, a weight is no weight, or `max_cost` is NaN.
     pub fn search(&self, query: &Query) -> Result<Option<Hit>, IndexError> {
-        check_query(query.features, self.dims, query.max_cost)?;
+        check_query(query, self.dims, query.max_cost)?;
         Ok(self.nearest(query))
     }
 
@@ -189,9 +205,9 @@ impl Index {
     /// A start of frame 0 is left only for what costs strictly less. `query.max_cost` is not looked at.
     ///
     /// # Errors
-    /// When the query is not of `dims` finite numbers, or the start's cost is NaN.
+    /// When the query is not of `dims` finite numbers, a weight is no weight, or the start's cost is NaN.
     pub fn search_from(&self, query: &Query, start: Hit) -> Result<Hit, IndexError> {
-        check_query(query.features, self.dims, start.cost)?;
+        check_query(query, self.dims, start.cost)?;
         let mut nearest = Nearest(start);
         self.visit(query, &mut nearest);
         Ok(nearest.0)
@@ -201,9 +217,9 @@ impl Index {
     /// becomes [`Hit::NONE`].
     ///
     /// # Errors
-    /// When the query is not of `dims` finite numbers, or `max_cost` is NaN.
+    /// When the query is not of `dims` finite numbers, a weight is no weight, or `max_cost` is NaN.
     pub fn search_top(&self, query: &Query, hits: &mut [Hit]) -> Result<usize, IndexError> {
-        check_query(query.features, self.dims, query.max_cost)?;
+        check_query(query, self.dims, query.max_cost)?;
         Ok(self.rank(query, hits))
     }
 
@@ -228,16 +244,23 @@ impl Index {
     }
 
     fn visit(&self, query: &Query, best: &mut impl Best) {
+        match query.weights {
+            None => self.visit_by::<Even>(query, best),
+            Some(_) => self.visit_by::<Weighted>(query, best),
+        }
+    }
+
+    fn visit_by<M: Metric>(&self, query: &Query, best: &mut impl Best) {
         match &self.layout {
-            Layout::Scalar(tree) => traverse::search(scalar::Scalar, tree, query, best),
+            Layout::Scalar(tree) => traverse::search::<8, _, M>(scalar::Scalar, tree, query, best),
             #[cfg(target_arch = "x86_64")]
-            Layout::Sse2(tree) => traverse::search(sse2::Sse2, tree, query, best),
+            Layout::Sse2(tree) => traverse::search::<4, _, M>(sse2::Sse2, tree, query, best),
             #[cfg(target_arch = "x86_64")]
-            Layout::Avx2(avx2, tree) => avx2.search(tree, query, best),
+            Layout::Avx2(avx2, tree) => avx2.search::<M>(tree, query, best),
             #[cfg(target_arch = "x86_64")]
-            Layout::Avx512(avx512, tree) => avx512.search(tree, query, best),
+            Layout::Avx512(avx512, tree) => avx512.search::<M>(tree, query, best),
             #[cfg(target_arch = "aarch64")]
-            Layout::Neon(tree) => traverse::search(neon::Neon, tree, query, best),
+            Layout::Neon(tree) => traverse::search::<4, _, M>(neon::Neon, tree, query, best),
         }
     }
 }

@@ -21,35 +21,41 @@ impl Kernel<4> for Neon {
     }
 
     #[inline(always)]
-    fn add_costs(self, sums: float32x4_t, q: f32, row: &Lanes<4>) -> float32x4_t {
+    fn difference(self, q: f32, row: &Lanes<4>) -> float32x4_t {
         // SAFETY: every AArch64 has NEON; the load reads the 4 numbers of `row`.
-        unsafe {
-            let row = vld1q_f32(row.as_ptr());
-            let difference = vsubq_f32(vdupq_n_f32(q), row);
-            vaddq_f32(sums, vmulq_f32(difference, difference))
-        }
+        unsafe { vsubq_f32(vdupq_n_f32(q), vld1q_f32(row.as_ptr())) }
     }
 
     #[inline(always)]
-    fn add_distances(self, sums: float32x4_t, q: f32, row: &Lanes<4>) -> float32x4_t {
-        // SAFETY: every AArch64 has NEON; the load reads the 4 numbers of `row`.
-        unsafe {
-            let row = vld1q_f32(row.as_ptr());
-            let difference = vsubq_f32(vdupq_n_f32(q), row);
-            vfmaq_f32(sums, difference, difference)
-        }
-    }
-
-    #[inline(always)]
-    fn add_bounds(self, sums: float32x4_t, q: f32, edges: &Edges<4>) -> float32x4_t {
+    fn gap(self, q: f32, edges: &Edges<4>) -> float32x4_t {
         // SAFETY: every AArch64 has NEON; the load reads the 4 pairs of `edges`.
         unsafe {
             let q = vdupq_n_f32(q);
             let edges = vld1q_u32(edges.as_ptr());
             let low = vreinterpretq_f32_u32(vshlq_n_u32::<16>(edges));
             let high = vreinterpretq_f32_u32(vandq_u32(edges, vdupq_n_u32(edges::UPPER)));
-            let difference = vsubq_f32(q, vminq_f32(vmaxq_f32(q, low), high));
-            vfmaq_f32(sums, difference, difference)
+            vsubq_f32(q, vminq_f32(vmaxq_f32(q, low), high))
+        }
+    }
+
+    #[inline(always)]
+    fn add_squares(self, sums: float32x4_t, difference: float32x4_t) -> float32x4_t {
+        // SAFETY: every AArch64 has NEON.
+        unsafe { vaddq_f32(sums, vmulq_f32(difference, difference)) }
+    }
+
+    #[inline(always)]
+    fn add_squares_fused(self, sums: float32x4_t, difference: float32x4_t) -> float32x4_t {
+        // SAFETY: every AArch64 has NEON.
+        unsafe { vfmaq_f32(sums, difference, difference) }
+    }
+
+    #[inline(always)]
+    fn add_weighted_squares(self, sums: float32x4_t, weight: f32, difference: float32x4_t) -> float32x4_t {
+        // SAFETY: every AArch64 has NEON.
+        unsafe {
+            let squares = vmulq_f32(difference, difference);
+            vaddq_f32(sums, vmulq_f32(vdupq_n_f32(weight), squares))
         }
     }
 

@@ -16,26 +16,28 @@ impl<const W: usize> Kernel<W> for Scalar {
     }
 
     #[inline(always)]
-    fn add_costs(self, mut sums: Lanes<W>, q: f32, row: &Lanes<W>) -> Lanes<W> {
-        for (sum, x) in sums.iter_mut().zip(row) {
-            let difference = q - x;
-            *sum += difference * difference;
-        }
-        sums
+    fn difference(self, q: f32, row: &Lanes<W>) -> Lanes<W> {
+        row.map(|x| q - x)
     }
 
     #[inline(always)]
-    fn add_distances(self, sums: Lanes<W>, q: f32, row: &Lanes<W>) -> Lanes<W> {
-        self.add_costs(sums, q, row)
+    fn gap(self, q: f32, edges: &Edges<W>) -> Lanes<W> {
+        edges.map(|edges| q - q.max(edges::low(edges)).min(edges::high(edges)))
     }
 
     #[inline(always)]
-    fn add_bounds(self, mut sums: Lanes<W>, q: f32, edges: &Edges<W>) -> Lanes<W> {
-        for (sum, &edges) in sums.iter_mut().zip(edges) {
-            let difference = q - q.max(edges::low(edges)).min(edges::high(edges));
-            *sum += difference * difference;
-        }
-        sums
+    fn add_squares(self, sums: Lanes<W>, difference: Lanes<W>) -> Lanes<W> {
+        std::array::from_fn(|lane| sums[lane] + difference[lane] * difference[lane])
+    }
+
+    #[inline(always)]
+    fn add_squares_fused(self, sums: Lanes<W>, difference: Lanes<W>) -> Lanes<W> {
+        self.add_squares(sums, difference)
+    }
+
+    #[inline(always)]
+    fn add_weighted_squares(self, sums: Lanes<W>, weight: f32, difference: Lanes<W>) -> Lanes<W> {
+        std::array::from_fn(|lane| sums[lane] + weight * (difference[lane] * difference[lane]))
     }
 
     #[inline(always)]

@@ -18,30 +18,40 @@ impl Kernel<4> for Sse2 {
     }
 
     #[inline(always)]
-    fn add_costs(self, sums: __m128, q: f32, row: &Lanes<4>) -> __m128 {
+    fn difference(self, q: f32, row: &Lanes<4>) -> __m128 {
         // SAFETY: every x86-64 has SSE2; the load reads the 4 numbers of `row`.
-        unsafe {
-            let row = _mm_loadu_ps(row.as_ptr());
-            let difference = _mm_sub_ps(_mm_set1_ps(q), row);
-            _mm_add_ps(sums, _mm_mul_ps(difference, difference))
-        }
+        unsafe { _mm_sub_ps(_mm_set1_ps(q), _mm_loadu_ps(row.as_ptr())) }
     }
 
     #[inline(always)]
-    fn add_distances(self, sums: __m128, q: f32, row: &Lanes<4>) -> __m128 {
-        self.add_costs(sums, q, row)
-    }
-
-    #[inline(always)]
-    fn add_bounds(self, sums: __m128, q: f32, edges: &Edges<4>) -> __m128 {
+    fn gap(self, q: f32, edges: &Edges<4>) -> __m128 {
         // SAFETY: every x86-64 has SSE2; the load reads the 4 pairs of `edges`.
         unsafe {
             let q = _mm_set1_ps(q);
             let edges = _mm_loadu_si128(edges.as_ptr().cast());
             let low = _mm_castsi128_ps(_mm_slli_epi32::<16>(edges));
             let high = _mm_castsi128_ps(_mm_and_si128(edges, _mm_set1_epi32(edges::UPPER as i32)));
-            let difference = _mm_sub_ps(q, _mm_min_ps(_mm_max_ps(q, low), high));
-            _mm_add_ps(sums, _mm_mul_ps(difference, difference))
+            _mm_sub_ps(q, _mm_min_ps(_mm_max_ps(q, low), high))
+        }
+    }
+
+    #[inline(always)]
+    fn add_squares(self, sums: __m128, difference: __m128) -> __m128 {
+        // SAFETY: every x86-64 has SSE2.
+        unsafe { _mm_add_ps(sums, _mm_mul_ps(difference, difference)) }
+    }
+
+    #[inline(always)]
+    fn add_squares_fused(self, sums: __m128, difference: __m128) -> __m128 {
+        self.add_squares(sums, difference)
+    }
+
+    #[inline(always)]
+    fn add_weighted_squares(self, sums: __m128, weight: f32, difference: __m128) -> __m128 {
+        // SAFETY: every x86-64 has SSE2.
+        unsafe {
+            let squares = _mm_mul_ps(difference, difference);
+            _mm_add_ps(sums, _mm_mul_ps(_mm_set1_ps(weight), squares))
         }
     }
 

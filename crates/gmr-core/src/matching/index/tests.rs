@@ -90,13 +90,33 @@ impl Case {
         }
     }
 
+    /// None, or weights that are all 1, all 0, of everyday size, or of all sizes.
+    fn weights(&self, random: &mut Random) -> Option<Vec<f32>> {
+        let kind = random.below(6);
+        let weight = |_| match kind {
+            0 => 1.0,
+            1 => 0.0,
+            2 => (random.below(4) as f32 - 1.0).max(0.0),
+            3 => random.below(1 << 20) as f32 * 10.0_f32.powi(random.below(60) as i32 - 33),
+            _ => 0.01 * random.below(300) as f32,
+        };
+        (kind < 5).then(|| (0..self.dims).map(weight).collect())
+    }
+
     /// Asks every index in every way, and holds the answers against brute force.
     fn check(&self, random: &mut Random) {
+        self.check_weighted(None, random);
+        let weights = self.weights(random);
+        self.check_weighted(weights.as_deref(), random);
+    }
+
+    fn check_weighted(&self, weights: Option<&[f32]>, random: &mut Random) {
         let count = self.candidates.len() as u32;
         let features = self.query_features(random);
         let from = random.below(count);
         let mut query = Query {
             features: &features,
+            weights,
             tags: if random.below(2) == 0 { 0 } else { random.below(8) },
             exclude: from..from + random.below(41),
             max_cost: f32::INFINITY,
@@ -183,10 +203,13 @@ fn a_batch_has_the_bits_of_single_queries_whatever_the_thread_count() {
     let queries: Vec<f32> = (0..300).flat_map(|_| case.query_features(&mut random)).collect();
     let tags: Vec<u32> = (0..300).map(|i| i % 3).collect();
     let exclude: Vec<Range<u32>> = (0..300).map(|i| i..i + 40).collect();
-    for index in &case.indices {
+    let one = vec![0.5; 27];
+    let each: Vec<f32> = (0..300 * 27).map(|_| random.below(4) as f32).collect();
+    for (index, weights) in case.indices.iter().zip([None, Some(&one), Some(&each)].into_iter().cycle()) {
         for threads in [1, 2, 5] {
             let batch = Batch {
                 queries: &queries,
+                weights: weights.map(Vec::as_slice),
                 count: 300,
                 tags: &tags,
                 exclude: Some(&exclude),
@@ -197,7 +220,9 @@ fn a_batch_has_the_bits_of_single_queries_whatever_the_thread_count() {
             index.search_batch(&batch, 3, &mut hits, || true).unwrap();
             for (i, hits) in hits.chunks(3).enumerate() {
                 let features = &queries[i * 27..][..27];
-                let query = Query { features, tags: tags[i], exclude: exclude[i].clone(), max_cost: 9.0 };
+                let weights = weights.map(|rows| &rows[if rows.len() == 27 { 0 } else { i * 27 }..][..27]);
+                let (tags, exclude) = (tags[i], exclude[i].clone());
+                let query = Query { features, weights, tags, exclude, max_cost: 9.0 };
                 let mut single = [Hit::NONE; 3];
                 index.search_top(&query, &mut single).unwrap();
                 assert_eq!(hits, single);
@@ -209,7 +234,15 @@ fn a_batch_has_the_bits_of_single_queries_whatever_the_thread_count() {
 #[test]
 fn a_batch_that_is_stopped_answers_nothing_more() {
     let index = Index::build(&[1.0, 2.0], 1, &[true; 2], None).unwrap();
-    let batch = Batch { queries: &[1.0], count: 1, tags: &[0], exclude: None, max_cost: 9.0, threads: 1 };
+    let batch = Batch {
+        queries: &[1.0],
+        weights: None,
+        count: 1,
+        tags: &[0],
+        exclude: None,
+        max_cost: 9.0,
+        threads: 1,
+    };
     let mut hits = [Hit::NONE];
     index.search_batch(&batch, 1, &mut hits, || false).unwrap();
     assert_eq!(hits, [Hit::NONE]);
@@ -247,9 +280,24 @@ fn what_cannot_be_asked_is_refused_in_words() {
     let start = Hit { frame: 0, cost: f32::NAN };
     assert!(index.search_from(&Query::new(&[1.0, 2.0]), start).is_err());
     let queries = [1.0, 2.0, 3.0, f32::INFINITY];
-    let batch = Batch { queries: &queries, count: 2, tags: &[0], exclude: None, max_cost: 1.0, threads: 1 };
-    let error = index.search_batch(&batch, 1, &mut [Hit::NONE; 2], || true).unwrap_err();
-    assert!(error.to_string().contains("feature 1 of query 1 is inf"));
+    let batch = Batch {
+        queries: &queries,
+        weights: None,
+        count: 2,
+        tags: &[0],
+        exclude: None,
+        max_cost: 1.0,
+        threads: 1,
+    };
+    let refusal_of =
+        |batch: &Batch| index.search_batch(batch, 1, &mut [Hit::NONE; 2], || true).unwrap_err().to_string();
+    assert!(refusal_of(&batch).contains("feature 1 of query 1 is inf"));
+    let finite = Batch { queries: &[0.0; 4], ..batch };
+    let refusal_of_weights =
+        |weights: &[f32]| refusal_of(&Batch { weights: Some(weights), ..finite.clone() });
+    assert!(refusal_of_weights(&[1.0, 1.0, 1.0, -0.5]).contains("weight 1 of query 1 is -0.5"));
+    assert!(refusal_of_weights(&[1.0, f32::NAN]).contains("weight 1 of query 0 is NaN"));
+    assert!(refusal_of_weights(&[1.0; 3]).contains("weights holds 3 elements where 4 are needed"));
 }
 
 #[test]
@@ -257,4 +305,45 @@ fn an_instruction_set_of_another_machine_is_refused() {
     let other = Isa::ALL.into_iter().find(|isa| !isa.is_available()).unwrap();
     let error = Index::build_for(other, &[1.0], 1, &[true], None).unwrap_err();
     assert!(error.to_string().contains(other.name()));
+}
+
+#[test]
+fn weights_of_one_change_no_bit() {
+    let mut random = Random(5);
+    let case = Case::new(Kind::Skewed, 3000, 27, &mut random);
+    for _ in 0..50 {
+        let features = case.query_features(&mut random);
+        let even = Query::new(&features);
+        let ones = Query { weights: Some(&[1.0; 27]), ..even.clone() };
+        for index in &case.indices {
+            assert_eq!(index.search(&even), index.search(&ones));
+        }
+    }
+}
+
+#[test]
+fn a_dimension_of_no_weight_says_nothing() {
+    let mut random = Random(6);
+    let case = Case::new(Kind::Walk, 3000, 6, &mut random);
+    let narrow: Vec<f32> = case.features.chunks_exact(6).flat_map(|row| row[..4].to_vec()).collect();
+    let narrow = Index::build(&narrow, 4, &case.candidates, Some(&case.tags)).unwrap();
+    for _ in 0..50 {
+        let features = case.query_features(&mut random);
+        let pose_only = Query { weights: Some(&[1.0, 1.0, 1.0, 1.0, 0.0, 0.0]), ..Query::new(&features) };
+        let expected = narrow.search(&Query::new(&features[..4]));
+        for index in &case.indices {
+            assert_eq!(index.search(&pose_only), expected);
+        }
+    }
+}
+
+#[test]
+fn where_nothing_counts_the_lowest_frame_is_found() {
+    for isa in Isa::available() {
+        let index = Index::build_for(isa, &[1.0; 19], 1, &[true; 19], None).unwrap();
+        let nothing = Query { weights: Some(&[0.0]), ..Query::new(&[5.0]) };
+        let mut hits = [Hit::NONE; 25];
+        assert_eq!(index.search_top(&nothing, &mut hits), Ok(19));
+        assert!(hits[..19].iter().enumerate().all(|(i, hit)| *hit == Hit { frame: i as u32, cost: 0.0 }));
+    }
 }

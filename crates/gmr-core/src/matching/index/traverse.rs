@@ -7,6 +7,7 @@
 //! whatever costs as little as the best is looked at, and the result is exact.
 
 use super::best::Best;
+use super::metric::{Metric, STRIDE};
 use super::tree::{Edges, Lanes, Tree};
 use super::{Hit, Query};
 
@@ -21,16 +22,21 @@ pub(super) trait Kernel<const W: usize>: Copy {
     /// Sums of nothing.
     fn zero(self) -> Self::Sums;
 
-    /// Adds to each sum the squared difference between `q` and a frame's number; difference, product and sum are each
-    /// rounded to `f32`, none fused, for these are the costs.
-    fn add_costs(self, sums: Self::Sums, q: f32, row: &Lanes<W>) -> Self::Sums;
+    /// What `q` is above the number of each of `W` frames.
+    fn difference(self, q: f32, row: &Lanes<W>) -> Self::Sums;
 
-    /// As [`Kernel::add_costs`], for ruling out only: product and sum may be fused.
-    fn add_distances(self, sums: Self::Sums, q: f32, row: &Lanes<W>) -> Self::Sums;
+    /// What `q` is above the nearest number between the edges of each of `W` boxes.
+    fn gap(self, q: f32, edges: &Edges<W>) -> Self::Sums;
 
-    /// Adds to each sum the squared difference between `q` and the nearest number between a box's edges; product and
-    /// sum may be fused.
-    fn add_bounds(self, sums: Self::Sums, q: f32, edges: &Edges<W>) -> Self::Sums;
+    /// Adds the squares of the differences; square and sum are each rounded to `f32`, not fused, for these are the
+    /// costs.
+    fn add_squares(self, sums: Self::Sums, difference: Self::Sums) -> Self::Sums;
+
+    /// As [`Kernel::add_squares`], for ruling out only: square and sum may be fused.
+    fn add_squares_fused(self, sums: Self::Sums, difference: Self::Sums) -> Self::Sums;
+
+    /// Adds the squares of the differences times `weight`; square, product and sum are each rounded to `f32`.
+    fn add_weighted_squares(self, sums: Self::Sums, weight: f32, difference: Self::Sums) -> Self::Sums;
 
     /// Sums of sums.
     fn add(self, a: Self::Sums, b: Self::Sums) -> Self::Sums;
@@ -48,19 +54,16 @@ pub(super) trait Kernel<const W: usize>: Copy {
 /// Levels of the deepest tree: 2^32 frames, four to a node.
 const MOST_LEVELS: usize = 16;
 
-/// Dimensions summed between two looks at whether the frames of a leaf are already too far.
-const STRIDE: usize = 8;
-
 /// Dimensions of a query that is put in the order of the layout without asking for memory.
 const FEW_DIMS: usize = 64;
 
 /// A query and how to lay it against a tree.
-struct Probe<'a, const W: usize, K> {
+struct Probe<'a, const W: usize, K, M: Metric> {
     kernel: K,
     tree: &'a Tree<W>,
     query: &'a Query<'a>,
-    /// The query's features as the tree lays them out.
-    laid_out: &'a [f32],
+    /// The query as the tree lays its dimensions out.
+    laid_out: &'a [M::Term],
     /// 1 and more than the share by which sums of the same terms can differ.
     slack: f32,
 }
@@ -79,23 +82,24 @@ struct Open<S> {
 
 /// Offers `best` every admitted frame that may beat its bound.
 #[inline(always)]
-pub(super) fn search<const W: usize, K: Kernel<W>>(
+pub(super) fn search<const W: usize, K: Kernel<W>, M: Metric>(
     kernel: K,
     tree: &Tree<W>,
     query: &Query,
     best: &mut impl Best,
 ) {
     let dims = tree.dims();
-    let (mut few, mut many) = ([0.0; FEW_DIMS], Vec::new());
+    let (mut few, mut many) = ([M::Term::default(); FEW_DIMS], Vec::new());
     let laid_out = if dims <= FEW_DIMS {
         &mut few[..dims]
     } else {
-        many.resize(dims, 0.0);
+        many.resize(dims, M::Term::default());
         &mut many[..]
     };
-    laid_out.iter_mut().zip(&tree.order).for_each(|(q, &dimension)| *q = query.features[dimension as usize]);
-    let slack = 1.0 + 2.0 * (dims + 2) as f32 * f32::EPSILON;
-    let probe = Probe { kernel, tree, query, laid_out, slack };
+    let count = M::lay_out(query, &tree.order, laid_out);
+    // A term is rounded three times at most, and once more wherever it is added.
+    let slack = 1.0 + 2.0 * (dims + 3) as f32 * f32::EPSILON;
+    let probe = Probe::<W, K, M> { kernel, tree, query, laid_out: &laid_out[..count], slack };
     match (tree.frames.len(), tree.levels.len().checked_sub(1)) {
         (0, _) => {}
         (_, None) => probe.look_at_leaf(0, best),
@@ -103,7 +107,7 @@ pub(super) fn search<const W: usize, K: Kernel<W>>(
     }
 }
 
-impl<const W: usize, K: Kernel<W>> Probe<'_, W, K> {
+impl<const W: usize, K: Kernel<W>, M: Metric> Probe<'_, W, K, M> {
     /// What a sum in the order of the layout is not above where the cost is not above `cost`.
     #[inline(always)]
     fn reach(&self, cost: f32) -> f32 {
@@ -145,19 +149,7 @@ impl<const W: usize, K: Kernel<W>> Probe<'_, W, K> {
     /// Lower bounds of the costs in the boxes of a node, but for [`Probe::reach`]'s share.
     #[inline(always)]
     fn bounds(&self, level: usize, node: usize) -> K::Sums {
-        let boxes = self.tree.node(level, node);
-        // Two sums at a time, for one would wait for itself.
-        let (pairs, last) = boxes.as_chunks::<2>();
-        let (q_pairs, q_last) = self.laid_out.as_chunks::<2>();
-        let (mut even, mut odd) = (self.kernel.zero(), self.kernel.zero());
-        for (q, edges) in q_pairs.iter().zip(pairs) {
-            even = self.kernel.add_bounds(even, q[0], &edges[0]);
-            odd = self.kernel.add_bounds(odd, q[1], &edges[1]);
-        }
-        for (&q, edges) in q_last.iter().zip(last) {
-            even = self.kernel.add_bounds(even, q, edges);
-        }
-        self.kernel.add(even, odd)
+        M::bounds(self.kernel, self.laid_out, self.tree.node(level, node))
     }
 
     /// Makes the nearest of the other children the nearest.
@@ -201,41 +193,23 @@ impl<const W: usize, K: Kernel<W>> Probe<'_, W, K> {
     #[inline(always)]
     fn look_at_leaf(&self, leaf: usize, best: &mut impl Best) {
         let rows = self.tree.leaf(leaf);
-        if self.is_too_far(rows, best.bound().cost) {
+        if M::are_too_far(self.kernel, self.laid_out, rows, self.reach(best.bound().cost)) {
             return;
         }
-        let mut costs = self.kernel.zero();
-        for (&q, &place) in self.query.features.iter().zip(&self.tree.places) {
-            costs = self.kernel.add_costs(costs, q, &rows[place as usize]);
-        }
+        let costs = M::costs(self.kernel, self.query, &self.tree.places, rows);
         let mut near = self.kernel.at_most(costs, best.bound().cost);
         while near != 0 {
             let (lane, cost) = self.kernel.lowest(costs, near);
             near &= !(1 << lane);
             let hit = Hit { frame: self.tree.frames[leaf][lane], cost };
-            if hit.beats(best.bound()) && self.query.admits(hit.frame, self.tree.tags[leaf][lane]) {
+            // What fills the last leaf costs infinitely much, unless nothing counts.
+            let is_frame = hit.frame != u32::MAX;
+            if is_frame && hit.beats(best.bound()) && self.query.admits(hit.frame, self.tree.tags[leaf][lane])
+            {
                 best.offer(hit);
                 near &= self.kernel.at_most(costs, best.bound().cost);
             }
         }
-    }
-
-    /// Whether some of the dimensions, the widest first, show that all frames of a leaf cost more than `best`.
-    #[inline(always)]
-    fn is_too_far(&self, rows: &[Lanes<W>], best: f32) -> bool {
-        let reach = self.reach(best);
-        let mut sums = self.kernel.zero();
-        let (rows, _) = rows.as_chunks::<STRIDE>();
-        let (laid_out, _) = self.laid_out.as_chunks::<STRIDE>();
-        for (q, rows) in laid_out.iter().zip(rows) {
-            for (&q, row) in q.iter().zip(rows) {
-                sums = self.kernel.add_distances(sums, q, row);
-            }
-            if self.kernel.at_most(sums, reach) == 0 {
-                return true;
-            }
-        }
-        false
     }
 }
 
