@@ -17,6 +17,7 @@ DISTRIBUTIONS: Final = {
     "asfamcparser": "asfamc-parser",
     "scipy": "scipy",
     "faiss": "faiss-cpu",
+    "hnswlib": "hnswlib",
     "igl": "libigl",
 }
 """Distribution that installs each peer, by the name of its module."""
