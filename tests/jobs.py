@@ -47,3 +47,33 @@ def count(folder: str, number: int) -> int:
     time.sleep(0.02)
     (Path(folder) / f"{number}").touch()
     return square(number)
+
+
+class Shared:
+    """What jobs share; it tells each process how often it was unpacked there."""
+
+    unpacked = 0
+
+    def __init__(self, factor: int, room: bytes = b"") -> None:
+        self.factor, self.room = factor, room
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        self.__dict__.update(state)
+        type(self).unpacked += 1
+
+
+def scaled(shared: Shared, number: int) -> tuple[int, int]:
+    """The number times what is shared, and how often that was unpacked here."""
+    return number * shared.factor, type(shared).unpacked
+
+
+def die_once_scaled(shared: tuple[str, int], number: int) -> int:
+    """As :func:`die_once`, times what is shared."""
+    folder, factor = shared
+    return factor * die_once(folder, number)
+
+
+def count_scaled(shared: tuple[str, int, bytes], number: int) -> int:
+    """As :func:`count`, times what is shared."""
+    folder, factor, _ = shared
+    return factor * count(folder, number)

@@ -38,6 +38,19 @@ def test_a_job_whose_process_is_killed_is_done_by_another(tmp_path: Path) -> Non
     assert (tmp_path / "died").exists()
 
 
+@pytest.mark.parametrize("workers", [1, 2])
+def test_what_jobs_share_is_given_to_each_and_sent_once(workers: int) -> None:
+    found = sorted(results(jobs.scaled, NUMBERS, workers=workers, shared=jobs.Shared(3)))
+    assert [result for _, (result, _) in found] == [3 * number for number in NUMBERS]
+    assert {unpacked for _, (_, unpacked) in found} == {workers - 1}
+
+
+def test_what_jobs_share_is_there_after_a_process_was_killed(tmp_path: Path) -> None:
+    found = sorted(results(jobs.die_once_scaled, NUMBERS, workers=2, shared=(str(tmp_path), 5)))
+    assert found == [(number, 5 * number * number) for number in NUMBERS]
+    assert (tmp_path / "died").exists()
+
+
 def test_a_job_that_kills_every_process_is_given_up() -> None:
     with pytest.raises(GmrError, match="have died 3 times over the same work"):
         list(results(jobs.die_always, NUMBERS, workers=2))
@@ -94,13 +107,14 @@ def test_a_cluster_does_every_job_once_though_a_worker_is_killed(tmp_path: Path)
     marks = tmp_path / "marks"
     marks.mkdir()
     many = list(range(150))
+    shared = (str(marks), 7, bytes(9_000_000))  # sent in pieces; it outlives the worker that put it together
     with cluster(tmp_path) as held:
         found = []
-        for result in results(partial(jobs.count, str(marks)), many, cluster=held.address):
+        for result in results(jobs.count_scaled, many, cluster=held.address, shared=shared):
             found.append(result)
             if len(found) == 40:
                 held.workers[0].kill()
-        assert sorted(found) == [(number, number * number) for number in many]
+        assert sorted(found) == [(number, 7 * number * number) for number in many]
         with pytest.raises(GmrError, match=r"^three\.bvh:3: no third$"):
             list(results(jobs.refuse_three, NUMBERS, cluster=held.address))
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import click
 
+from gmr.cli.cluster_options import check_workers, cluster_options
 from gmr.cli.common import say
 from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.evaluation_results import as_object, in_words
@@ -36,6 +37,7 @@ Examples:
   gmr evaluate takes/ --name left_foot=foot_l --name right_foot=foot_r
   gmr evaluate takes/ --prune 30% --prune-out smaller/     and the same in less
   gmr evaluate takes/ --prune lossless         without what no trial needs
+  gmr evaluate takes/ --prune 30% --cluster tcp://10.0.0.1:8786
   gmr evaluate takes/ --json > found.json      for a machine
 
 \b
@@ -84,6 +86,7 @@ Exit codes: 0 all files were evaluated, 1 some or all could not be (they are nam
 )
 @evaluation_options
 @pruning_options
+@cluster_options
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the verdict.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
 def evaluate(
@@ -104,6 +107,8 @@ def evaluate(
     threads: int | None,
     prune: float | str | None,
     prune_out: Path,
+    workers: int | None,
+    cluster: str | None,
     as_json: bool,
     quiet: bool,
 ) -> int:
@@ -120,6 +125,7 @@ def evaluate(
     check_scenarios(scenarios, speeds, turn_rates, preset, seed)
     if len(folders) > 1 and prune is not None:
         raise click.UsageError("--prune makes one dataset smaller; give one folder.")
+    check_workers(workers, cluster)
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):
         _check_places(None if no_report else out, tables, figures, phases)
@@ -135,6 +141,8 @@ def evaluate(
             speeds=speeds,
             turn_rates_deg=turn_rates,
             threads=threads,
+            workers=workers,
+            cluster=cluster,
             names=names,
             unit=unit,
             progress=phases.tell,
@@ -143,7 +151,16 @@ def evaluate(
         if prune is not None:
             assert isinstance(found, gmr.Evaluation)
             pruned = prune_folder(
-                found, folders[0], prune, prune_out, phases, threads=threads, names=names, unit=unit
+                found,
+                folders[0],
+                prune,
+                prune_out,
+                phases,
+                threads=threads,
+                workers=workers,
+                cluster=cluster,
+                names=names,
+                unit=unit,
             )
         written = _write(found, None if no_report else out, tables, figures, phases, pruned)
     click.echo(as_object(found, written, pruned) if as_json else in_words(found, written))

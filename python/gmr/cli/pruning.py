@@ -114,13 +114,17 @@ def prune_folder(
     phases: Phases,
     *,
     threads: int | None,
+    workers: int | None,
+    cluster: str | None,
     names: Mapping[str, str],
     unit: float | None,
 ) -> Pruned:
     """Find the smaller dataset, and write it."""
     from gmr.pruning import prune, write_pruned
+    from gmr.pruning.rerun import elsewhere
 
-    found = prune(evaluation, goal, threads=threads or 0, progress=phases.tell)
+    rerun = None if workers is None and cluster is None else elsewhere(workers, cluster)
+    found = prune(evaluation, goal, threads=threads or 0, rerun=rerun, progress=phases.tell)
     with at_place(out):
         written = write_pruned(found, folder, out, names=names, unit=unit, progress=phases.tell)
     return Pruned(found, written)

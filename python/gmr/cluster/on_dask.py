@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import pickle
 import time
 import uuid
 from collections import deque
@@ -12,6 +13,7 @@ from typing import Any, Final, TypeVar
 
 from gmr.cluster.interrupts import interrupts_held
 from gmr.cluster.running import LOCAL
+from gmr.cluster.shared import WithShared, joined
 from gmr.errors import GmrError, MissingExtraError
 
 __all__ = ["on_dask"]
@@ -28,12 +30,15 @@ _LOOK: Final = 2.0
 _PATIENCE: Final = 60.0
 """Seconds that a cluster may be without workers."""
 
+_PIECE: Final = 4_000_000
+"""Bytes that are sent to a scheduler at a time."""
+
 _ANSWER: Final = 15
 """Seconds in which a scheduler has to answer."""
 
 
 def on_dask(
-    work: Callable[[Job], Result], jobs: Sequence[Job], cluster: str, workers: int
+    work: Callable[..., Result], jobs: Sequence[Job], cluster: str, workers: int, shared: Any = None
 ) -> Iterator[tuple[int, Result]]:
     """See :func:`gmr.cluster.results`; ``workers`` are those of the local cluster."""
     try:
@@ -42,7 +47,7 @@ def on_dask(
         raise MissingExtraError("distributed", "cluster", "Work on a cluster") from error
     with _client(distributed, cluster, workers) as client:
         try:
-            yield from _results(distributed, client, work, jobs)
+            yield from _results(distributed, client, work, jobs, shared)
         except distributed.KilledWorker as error:
             raise GmrError(
                 f"workers of the cluster died again and again over the same work: {error}"
@@ -52,16 +57,18 @@ def on_dask(
 
 
 def _results(
-    distributed: Any, client: Any, work: Callable[[Job], Result], jobs: Sequence[Job]
+    distributed: Any, client: Any, work: Callable[..., Result], jobs: Sequence[Job], shared: Any
 ) -> Iterator[tuple[int, Result]]:
     waiting = deque(range(len(jobs)))
     running: dict[Any, int] = {}
     run = uuid.uuid4().hex
     threads = _threads(client)
+    sent = () if shared is None else (_sent(client, shared, run),)
+    alone = work if shared is None else WithShared(work, run)
     while waiting or running:
         while waiting and len(running) < _AHEAD * threads:
             number = waiting.popleft()
-            running[client.submit(work, jobs[number], key=f"gmr-{run}-{number}", pure=False)] = number
+            running[client.submit(alone, jobs[number], *sent, key=f"gmr-{run}-{number}", pure=False)] = number
         try:
             with client.as_current():
                 ended = distributed.wait(list(running), timeout=_LOOK, return_when="FIRST_COMPLETED").done
@@ -71,6 +78,17 @@ def _results(
         done = list(ended)
         for future, result in zip(done, client.gather(done), strict=True):
             yield running.pop(future), result
+
+
+def _sent(client: Any, shared: Any, run: str) -> Any:
+    """What all jobs share, on the cluster: in pieces that the scheduler holds, so that it can be put together
+    again when the worker that had it is gone."""
+    packed = pickle.dumps(shared, pickle.HIGHEST_PROTOCOL)
+    pieces = [
+        client.submit(bytes, packed[start : start + _PIECE], key=f"gmr-{run}-piece-{start}", pure=False)
+        for start in range(0, len(packed), _PIECE)
+    ]
+    return client.submit(joined, *pieces, key=f"gmr-{run}-shared", pure=False)
 
 
 def _threads(client: Any) -> int:

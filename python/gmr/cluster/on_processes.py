@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import pickle
 import signal
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from typing import Final, TypeVar
+from typing import Any, Final, TypeVar
 
 from gmr.cluster.interrupts import interrupts_held
+from gmr.cluster.shared import WithShared, hold
 from gmr.errors import GmrError
 
 __all__ = ["on_processes"]
@@ -28,19 +30,21 @@ _MOST_DEATHS: Final = 3
 
 
 def on_processes(
-    work: Callable[[Job], Result], jobs: Sequence[Job], workers: int
+    work: Callable[..., Result], jobs: Sequence[Job], workers: int, shared: Any = None
 ) -> Iterator[tuple[int, Result]]:
     """See :func:`gmr.cluster.results`."""
     waiting = deque(range(len(jobs)))
     deaths = [0] * len(jobs)
+    packed = None if shared is None else pickle.dumps(shared, pickle.HIGHEST_PROTOCOL)
+    alone = work if shared is None else WithShared(work)
     while waiting:
         running: dict[Future[Result], int] = {}
-        pool = _pool(workers)
+        pool = _pool(workers, packed)
         try:
             while waiting or running:
                 while waiting and len(running) < _AHEAD * workers:
                     with interrupts_held():  # a process is started by it
-                        running[pool.submit(work, jobs[waiting[0]])] = waiting[0]
+                        running[pool.submit(alone, jobs[waiting[0]])] = waiting[0]
                     waiting.popleft()
                 for future in wait(running, return_when=FIRST_COMPLETED).done:
                     result = future.result()
@@ -58,14 +62,16 @@ def on_processes(
             pool.shutdown(cancel_futures=True)
 
 
-def _pool(workers: int) -> ProcessPoolExecutor:
+def _pool(workers: int, shared: bytes | None) -> ProcessPoolExecutor:
     # Forking a process that has threads, as the core and NumPy start them, may copy a lock that is held.
     spawned = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(workers, mp_context=spawned, initializer=_begin)
+    return ProcessPoolExecutor(workers, mp_context=spawned, initializer=_begin, initargs=(shared,))
 
 
-def _begin() -> None:
+def _begin(shared: bytes | None) -> None:
     """What a worker does first: an interrupt is the command's to answer, and whose command is gone goes."""
+    if shared is not None:
+        hold("", shared)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})

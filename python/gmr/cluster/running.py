@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final, Generic, TypeVar
+from typing import Any, Final, Generic, TypeVar, cast
 
 from gmr.errors import GmrError
 from gmr.threads import thread_count
@@ -20,11 +20,12 @@ LOCAL: Final = "local"
 
 
 def results(
-    work: Callable[[Job], Result],
+    work: Callable[[Job], Result] | Callable[[Any, Job], Result],
     jobs: Sequence[Job],
     *,
     workers: int | None = None,
     cluster: str | None = None,
+    shared: Any = None,
 ) -> Iterator[tuple[int, Result]]:
     """Each job's number and result, in the order in which they are done, every job once.
 
@@ -39,6 +40,8 @@ def results(
             the local cluster: its workers.
         cluster: None: processes; "local": a Dask cluster of this machine's; else the address of a scheduler,
             such as ``tcp://10.0.0.1:8786``.
+        shared: what all jobs need, pickled: sent once to each worker, not with each job. Where it is not
+            None, ``work`` is called with it and the job.
 
     Raises:
         MissingExtraError: a cluster is asked for and distributed is not installed (the extra ``cluster``).
@@ -50,12 +53,14 @@ def results(
     if cluster is not None:
         from gmr.cluster.on_dask import on_dask
 
-        return on_dask(Plain(work), jobs, cluster, count)
+        return on_dask(Plain(work), jobs, cluster, count, shared)
     if min(count, len(jobs)) <= 1:
-        return ((number, work(job)) for number, job in enumerate(jobs))
+        given = () if shared is None else (shared,)
+        alone = cast(Callable[..., Result], work)
+        return ((number, alone(*given, job)) for number, job in enumerate(jobs))
     from gmr.cluster.on_processes import on_processes
 
-    return on_processes(Plain(work), jobs, min(count, len(jobs)))
+    return on_processes(Plain(work), jobs, min(count, len(jobs)), shared)
 
 
 def worker_count(workers: int | None, cluster: str | None = None) -> int:
@@ -80,14 +85,14 @@ def _cores() -> int:
 
 
 @dataclass(frozen=True)
-class Plain(Generic[Job, Result]):
+class Plain(Generic[Result]):
     """Work whose errors can be sent: of gmr's, which hold more than their words, only the words."""
 
-    work: Callable[[Job], Result]
+    work: Callable[..., Result]
 
-    def __call__(self, job: Job) -> Result:
-        """The result of one job."""
+    def __call__(self, *given: Any) -> Result:
+        """The result of one job: the last, after what all of them share."""
         try:
-            return self.work(job)
+            return self.work(*given)
         except GmrError as error:
             raise GmrError(str(error)) from None

@@ -8,12 +8,14 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
 from gmr.errors import DatasetError, FormatWarning
+from gmr.evaluation.elsewhere import simulated_elsewhere
 from gmr.evaluation.measured import measured
 from gmr.evaluation.regions import Limits
 from gmr.evaluation.replay import replay_of, worst_trial
@@ -62,6 +64,8 @@ def evaluate(
     switch_every: float = SWITCH_EVERY,
     seed: int = 0,
     threads: int | None = None,
+    workers: int | None = None,
+    cluster: str | None = None,
     progress: Progress | None = None,
     names: Mapping[str, str | int] | None = None,
     unit: float | str | None = None,
@@ -90,6 +94,9 @@ def evaluate(
         switch_every: seconds from one switch to the next.
         seed: of the random splines.
         threads: how many to use, all cores by default (or 0); the result does not depend on it.
+        workers: run the trials on so many processes instead; the result does not depend on it.
+        cluster: run them on a Dask cluster: the address of its scheduler, or "local" for one of this
+            machine's; the result does not depend on it.
         progress: called with the name of a phase ("reading", "preparing", "simulating", "measuring"), how
             much of it is done, and of how much; what it raises ends the evaluation.
         names: joints by role where they are not found by themselves: ``{"left_foot": "foot_l"}``.
@@ -104,6 +111,7 @@ def evaluate(
         DatasetError: there is no motion, none is usable, or hips, legs or feet are not found.
         FormatError: there is no such folder; or a file cannot be read and ``errors`` is "raise"; or a file of
             path points is none.
+        GmrError: the cluster cannot be reached; or the extra ``cluster`` is not installed.
         ValueError: a speed, turn rate, preset, scenario, tracking or thread count that makes no sense.
     """
     trackings = _trackings(tracking)
@@ -131,13 +139,10 @@ def evaluate(
         name, why = next(iter(database.excluded.items()))
         raise DatasetError(f"{name}: {why}")
     tell("preparing", 1, 1)
-    simulation = simulated(
-        database,
-        trials,
-        trackings,
-        threads=thread_total,
-        progress=lambda done, of: tell("simulating", done, of),
-    )
+    run = partial(simulated, threads=thread_total)
+    if workers is not None or cluster is not None:
+        run = partial(simulated_elsewhere, workers=workers, cluster=cluster)
+    simulation = run(database, trials, trackings, progress=lambda done, of: tell("simulating", done, of))
     tell("measuring", 0, 1)
     settings = {
         "preset": preset or "even",

@@ -14,7 +14,7 @@ from gmr.evaluation.scenario import Trial
 from gmr.matching.database import Database
 from gmr.matching.trial import Profile, Segment, Tracking, TrialLog, run_trials
 
-__all__ = ["Simulation", "frames_of", "log_of", "simulated"]
+__all__ = ["Simulation", "frames_of", "log_of", "profile_of", "simulated"]
 
 _COLUMNS: Final = (
     *("lengths", "recorded_from", "x", "z", "heading", "ref_x", "ref_z", "ref_heading", "ref_speed"),
@@ -66,7 +66,7 @@ def simulated(
         threads: 0 for all cores; the logs do not depend on it.
         progress: called with the number of runs done and of all runs.
     """
-    profiles = [_profile(trial) for trial in trials]
+    profiles = [profile_of(trial) for trial in trials]
     runs = len(trials) * len(trackings)
     logs: dict[Tracking, TrialLog] = {}
     for tracking in trackings:
@@ -101,7 +101,8 @@ def frames_of(database: Database) -> Frames:
     )
 
 
-def _profile(trial: Trial) -> Profile:
+def profile_of(trial: Trial) -> Profile:
+    """A trial as the core runs it."""
     return Profile(
         tuple(
             Segment(segment.seconds, segment.speed, float(np.radians(segment.turn_rate_deg)))

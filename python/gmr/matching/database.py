@@ -6,7 +6,7 @@ Next-Gen Animation" (2016).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from os import PathLike
@@ -111,6 +111,12 @@ class Database:
             excluded=assembly.excluded,
             starts=read_only(np.array(assembly.starts)),
         )
+
+    def __reduce__(self) -> tuple[Callable[[bytes], Database], tuple[bytes]]:
+        """As the bytes of a saved file."""
+        from gmr.matching.pickled import packed, unpacked
+
+        return unpacked, (packed(self),)
 
     def __len__(self) -> int:
         """N."""

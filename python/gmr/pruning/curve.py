@@ -15,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.errors import GmrError
+from gmr.evaluation.elsewhere import Asked
 from gmr.matching.database import Database
 from gmr.pruning.lossless import lossless_part
 from gmr.pruning.outcomes import Outcomes, Score, needed_rows
 from gmr.pruning.part import Part, Range, gaps, recordings_of, whole
-from gmr.pruning.rerun import Again, Asked, Rerun
+from gmr.pruning.rerun import Again, Rerun
 from gmr.table import Table
 
 __all__ = ["Curve", "Point", "curve_of"]

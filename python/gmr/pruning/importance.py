@@ -10,9 +10,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from gmr.evaluation.elsewhere import Asked
 from gmr.pruning.outcomes import Outcomes, needed_rows
 from gmr.pruning.part import recordings_of, whole
-from gmr.pruning.rerun import Again, Asked, Rerun
+from gmr.pruning.rerun import Again, Rerun
 from gmr.table import Table
 
 __all__ = ["importance_table"]

@@ -12,13 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.errors import GmrError
+from gmr.evaluation.elsewhere import Asked
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.simulation import Simulation
 from gmr.matching.database import Database
 from gmr.matching.root import HEADING_WINDOW, POSITION_WINDOW
 from gmr.pruning.outcomes import Outcomes, same_bits
 from gmr.pruning.part import Part, ranges_of, recordings_of
-from gmr.pruning.rerun import Again, Asked, logs_on
+from gmr.pruning.rerun import Again, logs_on
 
 __all__ = ["lossless", "lossless_part", "prove", "simulation_of"]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from gmr.evaluation.elsewhere import Asked
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.simulation import Simulation
 from gmr.pruning.curve import Curve, Point, curve_of
@@ -12,7 +13,7 @@ from gmr.pruning.importance import importance_table
 from gmr.pruning.lossless import lossless_part, prove, simulation_of
 from gmr.pruning.outcomes import Outcomes, joined, outcomes_of
 from gmr.pruning.part import Part
-from gmr.pruning.rerun import Asked, Rerun, here
+from gmr.pruning.rerun import Rerun, here
 from gmr.table import Table
 
 __all__ = ["LOSSLESS", "Pruning", "goal_of", "prune"]

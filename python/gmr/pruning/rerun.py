@@ -5,20 +5,20 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from contextlib import closing
 from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.cluster import results
 from gmr.errors import DatasetError
-from gmr.evaluation.scenario import Trial
-from gmr.evaluation.simulation import Simulation
-from gmr.matching.database import Database
-from gmr.matching.trial import Profile, Tracking, TrialLog, run_trials
+from gmr.evaluation.elsewhere import Asked
+from gmr.matching.trial import Tracking, TrialLog, run_trials
 from gmr.pruning.outcomes import Outcomes, joined, outcomes_of
 
-__all__ = ["Again", "Asked", "Rerun", "here", "made_again"]
+__all__ = ["Again", "Rerun", "elsewhere", "here", "logs_on", "made_again"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,21 +32,6 @@ class Again:
 
     left: NDArray[np.bool_]
     runs: NDArray[np.intp]
-
-
-@dataclass(frozen=True, slots=True)
-class Asked:
-    """What all runs are made of: T trials, each once for every tracking."""
-
-    database: Database
-    trials: tuple[Trial, ...]
-    profiles: tuple[Profile, ...]
-    trackings: tuple[Tracking, ...]
-
-    @classmethod
-    def of(cls, simulation: Simulation) -> Asked:
-        """As a simulation asked it."""
-        return cls(simulation.database, simulation.trials, simulation.profiles, tuple(simulation.logs))
 
 
 Rerun: TypeAlias = Callable[[Asked, Sequence[Again]], Iterator[tuple[int, Outcomes | None]]]
@@ -106,6 +91,17 @@ def here(threads: int = 0) -> Rerun:
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)
                 raise
+
+    return run
+
+
+def elsewhere(workers: int | None = None, cluster: str | None = None) -> Rerun:
+    """On other processes or on a cluster, with the same bits; see :func:`gmr.cluster.results`."""
+
+    def run(asked: Asked, jobs: Sequence[Again]) -> Iterator[tuple[int, Outcomes | None]]:
+        coming = results(made_again, jobs, workers=workers, cluster=cluster, shared=asked)
+        with closing(coming) as found:  # type: ignore[type-var]
+            yield from found
 
     return run
 

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from gmr.errors import DatasetError, FormatWarning, GmrError
+from gmr.evaluation.elsewhere import Asked
 from gmr.formats import read_folder, write
 from gmr.formats.folder import Takes
 from gmr.formats.registry import FORMATS, suffixes
@@ -30,7 +31,6 @@ from gmr.pruning.manifest import manifest, manifest_words
 from gmr.pruning.outcomes import Score, joined, outcomes_of, same_bits
 from gmr.pruning.part import Part, recordings_of
 from gmr.pruning.prune import LOSSLESS, Pruning
-from gmr.pruning.rerun import Asked
 
 __all__ = ["Written", "check_new_folder", "write_pruned"]
 
