@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import shutil
-import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from gmr.cli.choosing import check_choosing, choosing_options, completion_words, read_clips
 from gmr.cli.common import say
 from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.outcome import at_place, left_out, trouble_with_files
@@ -17,7 +16,6 @@ from gmr.cli.progress import Phases
 
 if TYPE_CHECKING:
     from gmr.completion import Completion
-    from gmr.formats.folder import Takes
 
 __all__ = ["complete"]
 
@@ -27,6 +25,8 @@ Examples:
   gmr complete takes/                  completed/index.html, its tables, and completed/clips/ beside you
   gmr complete takes/ -o filled/ --variation 0.5 --seed 3
   gmr complete takes/ --speeds 0.5:3:0.5 --turn-rates -90:90:30
+  gmr complete takes/ --from archive/  clips of another folder, those that take away most per second
+  gmr complete takes/ --from archive/ --at-most 60 --made --retarget
   gmr complete takes/ --json > found.json
 
 \b
@@ -43,10 +43,21 @@ named), 2 wrong usage, 130 interrupted.
     type=click.Path(file_okay=False, path_type=Path),
     default=Path("completed"),
     show_default=True,
-    help="Folder for the page (index.html), the tables, and the clips that were made (clips/).",
+    help="Folder for the page (index.html), the tables, and the clips that were made or chosen (clips/).",
 )
 @click.option(
-    "--seconds", type=click.FloatRange(2, 60), default=8.0, show_default=True, help="Length of a clip."
+    "--from",
+    "source",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="Choose clips of this folder: as they are, mirrored, or 0.8 to 1.25 times as fast.",
+)
+@choosing_options
+@click.option(
+    "--seconds",
+    type=click.FloatRange(2, 60),
+    default=8.0,
+    show_default=True,
+    help="Length of a clip that is made.",
 )
 @click.option(
     "--variation",
@@ -62,6 +73,10 @@ named), 2 wrong usage, 130 interrupted.
 def complete(
     folder: Path,
     out: Path,
+    source: Path | None,
+    at_most: float | None,
+    made: bool,
+    retarget: bool,
     seconds: float,
     variation: float,
     seed: int,
@@ -77,62 +92,53 @@ def complete(
     """Fill the holes of a dataset of locomotion clips, and show what that does.
 
     The clips in FOLDER are evaluated as by gmr evaluate. For each speed and turn rate that they do not do,
-    a clip is synthesised from actionlets on their own skeleton; then the same trials are run again with
-    both. The page shows before and after, also where it got worse. FOLDER is left as it is.
+    a clip is synthesised from actionlets on their own skeleton, or, with --from, clips of another folder
+    are chosen; then the same trials are run again with both. The page shows before and after, also where
+    it got worse. FOLDER is left as it is.
     """
     from gmr.completion import complete as completed
-    from gmr.completion import synthesised, write_completion
+    from gmr.completion import complete_from, synthesised, write_completion
     from gmr.replacing import check_place
 
+    check_choosing(source, at_most, made, retarget, "--from")
+    fill = synthesised(seconds=seconds, variation=variation, seed=seed)
+    settings: dict[str, Any] = {
+        "dataset": folder.resolve().name,
+        "speeds": speeds,
+        "turn_rates_deg": turn_rates,
+        "mirror": mirror,
+        "names": names,
+        "unit": unit,
+        "threads": threads,
+    }
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):
         with at_place(out):
             check_place(out / "index.html")
-        takes = _read(folder, threads, phases)
-        found = completed(
-            dict(takes),
-            synthesised(seconds=seconds, variation=variation, seed=seed),
-            dataset=folder.resolve().name,
-            progress=phases.tell,
-            speeds=speeds,
-            turn_rates_deg=turn_rates,
-            mirror=mirror,
-            names=names,
-            unit=unit,
-            threads=threads,
-        )
+        takes = read_clips(folder, threads, phases)
+        failed = {path: str(error) for path, error in takes.failed.items()}
+        if source is None:
+            found = completed(dict(takes), fill, progress=phases.tell, **settings)
+        else:
+            others = read_clips(source, threads, phases)
+            failed |= {str(source / path): str(error) for path, error in others.failed.items()}
+            found = complete_from(
+                dict(takes),
+                dict(others),
+                source=source.resolve().name,
+                at_most=at_most,
+                fill=fill if made else None,
+                lay=retarget,
+                progress=phases.tell,
+                **settings,
+            )
         with at_place(out):
-            written = write_completion(found, out, progress=phases.tell)
-    failed = {**{path: str(error) for path, error in takes.failed.items()}, **found.before.failed}
-    click.echo(_summary(found, written) if as_json else _words(found, written))
+            written = write_completion(found, out, source=source, progress=phases.tell)
+    failed |= found.before.failed
+    click.echo(_summary(found, written) if as_json else completion_words(found, written))
     for sentence in left_out(failed):
         say(sentence)
     return 1 if failed else 0
-
-
-def _read(folder: Path, threads: int | None, phases: Phases) -> Takes:
-    from gmr.errors import DatasetError
-    from gmr.formats import read_folder
-
-    takes = read_folder(
-        folder,
-        threads=threads,
-        errors="collect",
-        progress=lambda done, of: phases.tell("reading", done, of),
-    )
-    if not takes:
-        raise DatasetError(f"{folder} holds no motion that can be read; give the folder with the clips")
-    return takes
-
-
-def _words(found: Completion, written: Path) -> str:
-    from gmr.completion.words import headline, sentences
-
-    width = min(shutil.get_terminal_size((100, 24)).columns, 100)
-    lines = [*textwrap.wrap(headline(found), width), ""]
-    for sentence in sentences(found):
-        lines += textwrap.wrap(sentence, width, initial_indent="- ", subsequent_indent="  ")
-    return "\n".join([*lines, "", f"Page: {written}"])
 
 
 def _summary(found: Completion, written: Path) -> str:
@@ -143,8 +149,15 @@ def _summary(found: Completion, written: Path) -> str:
         "headline": headline(found),
         "sentences": sentences(found),
         "trials": list(found.trials.rows()),
-        "clips": list(found.clips.rows()),
+        "clips": [_finite(row) for row in found.clips.rows()],
+        "chosen": list(found.chosen.rows()),
+        "refused": dict(found.refused),
         "not_made": [{"speed": a.speed, "turn_rate_deg": a.turn_rate_deg} for a in found.not_made],
         "page": str(written),
     }
     return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+
+
+def _finite(row: dict[str, Any]) -> dict[str, Any]:
+    """JSON has no NaN: what a chosen clip was not made for is null."""
+    return {name: None if value != value else value for name, value in row.items()}

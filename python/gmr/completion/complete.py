@@ -6,14 +6,17 @@ by what they hold: the second evaluation runs every trial of the first again.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Container, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.completion.candidates import SYNTHESISED
+from gmr.completion.choosing import Choice
 from gmr.completion.holes import Ask, grid_of, holes
 from gmr.errors import DatasetError
 from gmr.evaluation.evaluate import evaluate
@@ -21,7 +24,7 @@ from gmr.evaluation.result import Evaluation
 from gmr.motion import Motion
 from gmr.table import Table
 
-__all__ = ["Completion", "Filler", "complete"]
+__all__ = ["Completion", "Filler", "Progress", "complete", "with_straight"]
 
 Filler: TypeAlias = Callable[[Ask, Motion], Motion | None]
 """Makes a clip of a movement on the skeleton of another motion; None where it cannot."""
@@ -39,9 +42,14 @@ class Completion:
     Attributes:
         dataset: its name.
         before, after: the two evaluations, of the same trials.
-        added: the clips that were made, by name.
-        asked: what each of them was made for.
+        added: the clips that were made or chosen, by name.
+        asked: what each of them was made for, where it was made for something.
         not_made: holes that nothing could be made for.
+        source: what the clips were chosen from; "" where all were made.
+        choices: the chosen clips, in the order of the choice.
+        refused: clips that could not be chosen, and why.
+        considered: how many clips could have been chosen.
+        held_before: how many trials held before the first choice, with the features scaled as for choosing.
     """
 
     dataset: str
@@ -50,6 +58,11 @@ class Completion:
     added: Mapping[str, Motion]
     asked: Mapping[str, Ask]
     not_made: tuple[Ask, ...]
+    source: str = ""
+    choices: tuple[Choice, ...] = ()
+    refused: Mapping[str, str] = field(default_factory=dict)
+    considered: int = 0
+    held_before: int = 0
 
     @cached_property
     def trials(self) -> Table:
@@ -67,13 +80,16 @@ class Completion:
 
     @cached_property
     def clips(self) -> Table:
-        """One row a clip that was made: what for, its ``seconds``, how long it is played in all trials
-        (``played_seconds``), and whether the trial that it was made for now ``holds``."""
+        """One row a clip that was added: what it was made for (a chosen one for nothing: NaN), its
+        ``seconds``, how long it is played in all trials (``played_seconds``), whether the trial that it was
+        made for now ``holds``; the clip that it comes from (``source``), and what was done to that
+        (``how``)."""
         played = dict(
             zip(self.after.measured.clips["clip"], self.after.measured.clips["played_seconds"], strict=True)
         )
         held = {(row["speed"], row["turn_rate_deg"]): row["held_after"] for row in self.trials.rows()}
-        asks = [self.asked[name] for name in self.added]
+        asks = [self.asked.get(name, _NOTHING) for name in self.added]
+        origin = {choice.name: choice.candidate for choice in self.choices}
         return Table(
             {
                 "clip": np.array(list(self.added), object),
@@ -82,8 +98,38 @@ class Completion:
                 "seconds": np.array([m.frame_count * m.frame_time for m in self.added.values()], np.float64),
                 "played_seconds": np.array([float(played.get(name, 0.0)) for name in self.added], np.float64),
                 "holds": np.array([bool(held.get((a.speed, a.turn_rate_deg), False)) for a in asks], bool),
+                "source": _text(origin[name].source if name in origin else name for name in self.added),
+                "how": _text(origin[name].how if name in origin else SYNTHESISED for name in self.added),
             }
         )
+
+    @cached_property
+    def chosen(self) -> Table:
+        """One row a choice, in order: the clip, where it comes from, its ``seconds``, the ``bound`` that it
+        was ranked by, the search cost of the trials that failed at first before and after (the mean share of what
+        it was at first), what it took away per second of clip (``gain``), how many trials hold with it, and how many
+        clips were tried."""
+        rows = self.choices
+        return Table(
+            {
+                "clip": _text(row.name for row in rows),
+                "source": _text(row.candidate.source for row in rows),
+                "how": _text(row.candidate.how for row in rows),
+                **{
+                    name: np.array([getattr(row, name) for row in rows], np.float64)
+                    for name in ("seconds", "bound", "cost_before", "cost_after", "gain")
+                },
+                "held": np.array([row.held for row in rows], np.int64),
+                "tried": np.array([row.tried for row in rows], np.int64),
+            }
+        )
+
+
+_NOTHING: Final = Ask(math.nan, math.nan)
+
+
+def _text(values: Iterable[str]) -> NDArray[np.object_]:
+    return np.array(list(values), object)
 
 
 def complete(
@@ -121,7 +167,7 @@ def complete(
     added: dict[str, Motion] = {}
     asked: dict[str, Ask] = {}
     not_made: list[Ask] = []
-    wanted = _with_straight(holes(before))
+    wanted = with_straight(holes(before))
     for number, ask in enumerate(wanted):
         tell("making clips", number, len(wanted))
         made = fill(ask, like)
@@ -139,7 +185,7 @@ def complete(
     return Completion(dataset, before, after, added, asked, tuple(not_made))
 
 
-def _with_straight(asks: Iterable[Ask]) -> tuple[Ask, ...]:
+def with_straight(asks: Iterable[Ask]) -> tuple[Ask, ...]:
     """With each speed straight ahead too, for that is how a trial gets to it."""
     asks = list(asks)
     return tuple(dict.fromkeys(sorted([*asks, *(ask.straight for ask in asks)])))

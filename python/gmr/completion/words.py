@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.completion.choice_words import from_folder
 from gmr.completion.complete import Completion
 from gmr.completion.holes import Ask
 from gmr.evaluation.figures.wording import asked, metres
@@ -28,19 +29,22 @@ def headline(of: Completion) -> str:
     if before.all():
         all_of_them = "the one trial" if total == 1 else f"all {total} trials"
         return f"Nothing is missing: {of.dataset} does {all_of_them} that it is asked for."
+    if of.source and not of.added:
+        return f"Nothing in {of.source} helps: {of.dataset} does {int(before.sum())} of {total} trials."
     filled, lost = int((after & ~before).sum()), int((before & ~after).sum())
     told = f"{count(filled, 'hole is', 'holes are')} filled" + (
         f", {count(lost, 'trial is', 'trials are')} lost" if lost else ", none is lost"
     )
     return (
-        f"With {count(len(of.added), 'made clip')} it does {int(after.sum())} of {total} trials "
+        f"With {count(len(of.added), _clip(of))} it does {int(after.sum())} of {total} trials "
         f"({percent(float(after.mean()))}) where it did {int(before.sum())}: {told}."
     )
 
 
 def sentences(of: Completion) -> tuple[str, ...]:
     """What stands behind the headline, in reading order."""
-    return tuple(filter(None, (*_made(of), _open(of), _worse(of), *_played(of))))
+    how = from_folder(of) if of.source else _made(of)
+    return tuple(filter(None, (*how, _open(of), _worse(of), *_played(of))))
 
 
 def change_sentence(of: Completion) -> str:
@@ -101,10 +105,15 @@ def _played(of: Completion) -> Iterator[str]:
     played = of.clips["played_seconds"]
     total = float(of.after.measured.clips["played_seconds"].sum())
     if total > 0:
-        yield f"The made clips are played {percent(float(played.sum()) / total)} of the time."
+        yield f"The {_clip(of)}s are played {percent(float(played.sum()) / total)} of the time."
     idle = of.clips["clip"][played == 0].tolist()
     if idle:
-        yield f"{count(len(idle), 'made clip is', 'made clips are')} never played: {some_of(idle, _SHOWN)}."
+        told = count(len(idle), f"{_clip(of)} is", f"{_clip(of)}s are")
+        yield f"{told} never played: {some_of(idle, _SHOWN)}."
+
+
+def _clip(of: Completion) -> str:
+    return "chosen clip" if of.source else "made clip"
 
 
 def _held(of: Completion, when: str) -> NDArray[np.bool_]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -9,7 +10,9 @@ from typing import Final
 
 from gmr.completion.complete import Completion
 from gmr.completion.page import page
+from gmr.completion.words import headline, sentences
 from gmr.formats import write
+from gmr.motion import Motion
 from gmr.replacing import replacing
 
 __all__ = ["write_completion"]
@@ -24,6 +27,7 @@ def write_completion(
     of: Completion,
     folder: str | os.PathLike[str],
     *,
+    source: str | os.PathLike[str] | None = None,
     progress: Callable[[str, int, int], object] | None = None,
 ) -> Path:
     """Write all of it into a folder.
@@ -31,11 +35,15 @@ def write_completion(
     Args:
         of: what to write.
         folder: where to; made where it is missing. Files of these names in it are replaced, each at once.
+        source: the folder that clips were chosen from: those that are added as they are are copied from it,
+            byte for byte, where a file tells all by itself; all others are written as BVH.
         progress: called with what is being written, how much of it is done, and of how much.
 
     Returns:
         The page, ``index.html``; beside it the full reports ``before.html`` and ``after.html``,
-        ``trials.csv`` and ``clips.csv``, and ``clips/``, the clips that were made, as BVH.
+        ``trials.csv`` and ``clips.csv``, and ``clips/``, the clips that were made or chosen. Where they were
+        chosen, ``chosen.csv`` and ``manifest.json`` too, which say what each is, where it comes from, what it
+        took away, and which clips were refused and why.
 
     Raises:
         OSError: a file cannot be written.
@@ -46,11 +54,15 @@ def write_completion(
     clips.mkdir(parents=True, exist_ok=True)
     for number, (name, motion) in enumerate(of.added.items()):
         tell("writing clips", number, len(of.added))
-        write(motion, clips / name)
+        _add(of, name, motion, clips, None if source is None else Path(source))
     tell("writing clips", len(of.added), len(of.added))
     tell("writing the page", 0, 1)
     of.trials.to_csv(folder / "trials.csv")
     of.clips.to_csv(folder / "clips.csv")
+    if of.source:
+        of.chosen.to_csv(folder / "chosen.csv")
+        with replacing(folder / "manifest.json") as (file,):
+            file.write(_manifest(of).encode())
     of.before.report(folder / "before.html")
     of.after.report(folder / "after.html")
     written = folder / "index.html"
@@ -58,6 +70,38 @@ def write_completion(
         file.write(page(of, _strips(of)).encode())
     tell("writing the page", 1, 1)
     return written
+
+
+def _add(of: Completion, name: str, motion: Motion, clips: Path, source: Path | None) -> None:
+    """Copy a file that is added whole, or write what was made of it."""
+    candidate = next((choice.candidate for choice in of.choices if choice.name == name), None)
+    place = clips / name
+    if candidate is None or not candidate.whole:
+        write(motion, place)
+    elif source is not None and place.suffix.lower() in _WHOLE_IN_ONE_FILE:
+        with replacing(place) as (file,):
+            file.write((source / candidate.source).read_bytes())
+    else:
+        write(motion, _written_as(place))
+
+
+_WHOLE_IN_ONE_FILE: Final = (".bvh", ".gmr", ".glb")
+
+
+def _written_as(place: Path) -> Path:
+    return place if place.suffix.lower() == ".bvh" else place.with_suffix(".bvh")
+
+
+def _manifest(of: Completion) -> str:
+    content = {
+        "dataset": of.dataset,
+        "chosen_from": of.source,
+        "headline": headline(of),
+        "sentences": sentences(of),
+        "clips": list(of.chosen.rows()),
+        "refused": dict(of.refused),
+    }
+    return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
 
 
 def _strips(of: Completion) -> dict[str, str]:

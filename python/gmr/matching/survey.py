@@ -21,7 +21,7 @@ from gmr.skeleton import Skeleton
 from gmr.tpose import leading_rest_frames
 from gmr.units import metres_per_unit
 
-__all__ = ["Survey", "survey"]
+__all__ = ["Survey", "difference", "survey"]
 
 _SAMPLES = 12
 """Poses of each clip that decide on joints, up axis and unit."""
@@ -210,8 +210,8 @@ def _on_one_skeleton(
             f"time. {_APART}"
         )
     for name in others:
-        difference = _difference(usual, motions[name].skeleton)
-        excluded[name] = f"another skeleton than that of the clips evaluated, {difference}"
+        other = difference(usual, motions[name].skeleton)
+        excluded[name] = f"another skeleton than that of the clips evaluated, {other}"
     note = (
         f"The clips have {len(kinds)} skeletons that differ in their joints (bones may differ in length); "
         f"{len(kinds[main])} of {len(motions)} clips have the one of most of the time, and only these were "
@@ -220,7 +220,8 @@ def _on_one_skeleton(
     return {name: motions[name] for name in kinds[main]}, [note]
 
 
-def _difference(usual: Skeleton, odd: Skeleton) -> str:
+def difference(usual: Skeleton, odd: Skeleton) -> str:
+    """What joints a skeleton has otherwise than the usual one: "without 'Toe' and with 'Finger' besides"."""
     lacking = [name for name in usual.names if name not in odd.names]
     added = [name for name in odd.names if name not in usual.names]
     parts = [f"without {quoted(lacking, 3)}"] if lacking else []

@@ -1,0 +1,261 @@
+"""A dataset completed from other clips: those that take most away from what its failing trials cost.
+
+Source: spec of dataset evaluation, completion; see :mod:`gmr.completion.choosing` for how clips are chosen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+import numpy as np
+
+from gmr.completion.candidates import Candidate, on_skeleton, variants
+from gmr.completion.choosing import Choice, Contest, choose, joined, search_costs, shortlisted
+from gmr.completion.complete import Completion, Filler, Progress, with_straight
+from gmr.completion.holes import holes
+from gmr.completion.queries import queries_of
+from gmr.completion.tempo import Rows, rows_of
+from gmr.errors import DatasetError
+from gmr.evaluation.evaluate import evaluate
+from gmr.evaluation.result import Evaluation
+from gmr.evaluation.simulation import Simulation
+from gmr.matching.database import Database
+from gmr.matching.trial import Tracking
+from gmr.motion import Motion
+from gmr.pruning.outcomes import outcomes_of
+from gmr.threads import thread_count
+
+__all__ = ["complete_from"]
+
+_AS_EVALUATED: Final = ("preset", "scenarios", "mirror", "tracking", "speeds", "turn_rates_deg")
+
+
+def complete_from(
+    motions: Mapping[str, Motion],
+    others: Mapping[str, Motion],
+    *,
+    source: str = "other clips",
+    dataset: str = "motions",
+    at_most: float | None = None,
+    fill: Filler | None = None,
+    lay: bool = False,
+    before: Evaluation | None = None,
+    progress: Progress | None = None,
+    names: Mapping[str, str | int] | None = None,
+    unit: float | str | None = None,
+    threads: int | None = None,
+    **settings: Any,
+) -> Completion:
+    """Complete a dataset from other clips: as they are, mirrored, or played 0.8 to 1.25 times as fast.
+
+    The clips are ranked and tried with the features scaled as in the dataset by itself; the second evaluation
+    scales them anew over both, as whoever evaluates the completed dataset will see it.
+
+    Args:
+        motions: the dataset's clips by name, on one skeleton.
+        others: the clips to choose from, by name.
+        source: what these are called together.
+        dataset: what the dataset is called.
+        at_most: seconds that the chosen clips may last together; no limit where left out.
+        fill: lets clips that it makes for the holes compete; see :func:`gmr.completion.synthesised`.
+        lay: lay clips of another skeleton on the dataset's (:func:`gmr.skinning.retarget`); else they are
+            refused.
+        before: the dataset's evaluation, where it is there already, with the settings that it was made with.
+        progress: called with the name of a phase, how much of it is done, and of how much.
+        names, unit, threads, settings: of :func:`gmr.evaluate`, for both evaluations; trials at one speed only
+            by default.
+
+    Returns:
+        Both evaluations, the clips chosen with what each took away, and the clips refused with why.
+
+    Raises:
+        DatasetError: as :func:`gmr.evaluate`; or there are no other clips.
+    """
+    if not others:
+        raise DatasetError(f"{source} holds no clip to complete the dataset from")
+    tell = progress or (lambda phase, done, of: None)
+
+    def phase(name: str) -> Progress:
+        return lambda what, done, of: tell(f"{name}: {what}", done, of)
+
+    reading: dict[str, Any] = {"names": names, "unit": unit, "threads": threads}
+    if before is None or before.simulation is None:
+        settings = {"scenarios": "constant", **settings}
+        before = evaluate(motions, progress=phase("before"), **reading, **settings)
+    else:
+        settings = {name: before.summary.settings[name] for name in _AS_EVALUATED}
+    assert before.simulation is not None
+    hunt = _Hunt(before, motions, {"names": names, "unit": unit}, thread_count(threads), tell)
+    choices, refused, added, held = hunt.found(others, fill, lay, at_most)
+    after = (
+        evaluate({**motions, **added}, progress=phase("after"), **reading, **settings) if added else before
+    )
+    if left_out := sorted(set(after.failed) & set(added)):
+        raise DatasetError(
+            f"{left_out[0]} cannot be evaluated beside the dataset's own clips: {after.failed[left_out[0]]}"
+        )
+    return Completion(
+        dataset,
+        before,
+        after,
+        added,
+        {},
+        (),
+        source=source,
+        choices=choices,
+        refused=refused,
+        held_before=held,
+    )
+
+
+class _Hunt:
+    """The steps from clips to choices, which share the dataset, how it is read, and who is told."""
+
+    def __init__(
+        self,
+        before: Evaluation,
+        motions: Mapping[str, Motion],
+        reading: Mapping[str, Any],
+        threads: int,
+        tell: Progress,
+    ) -> None:
+        assert before.simulation is not None
+        self.before, self.simulation = before, before.simulation
+        self.motions = {name: motion for name, motion in motions.items() if name not in before.failed}
+        self.reading, self.threads, self.tell = reading, threads, tell
+
+    @property
+    def whole(self) -> Database:
+        """The dataset by itself."""
+        return self.simulation.database
+
+    def found(
+        self, others: Mapping[str, Motion], fill: Filler | None, lay: bool, at_most: float | None
+    ) -> tuple[tuple[Choice, ...], dict[str, str], dict[str, Motion], int]:
+        """The choices, what was refused and why, the chosen clips, and how many trials held before."""
+        tracking, trials = _steady(self.simulation)
+        log = self.simulation.logs[tracking]
+        held = outcomes_of(log).held[trials]
+        failing = trials[~held]
+        if not len(failing):
+            return (), {}, {}, int(held.sum())
+        like = next(iter(self.motions.values()))
+        usable, laid, refused = on_skeleton(others, self.whole.skeleton, _layer(like) if lay else None)
+        made = self._made(fill, like)
+        if not usable and not made:
+            return (), refused, {}, int(held.sum())
+        asked = queries_of(self.whole, log, failing, search_costs(log, failing))
+        self.tell("ranking", 0, 1)
+        rows = self._rows({**usable, **made}, laid, set(made), refused)
+        short = {name: part for name, part in rows.items() if at_most is None or part.seconds <= at_most}
+        listed = shortlisted(short, asked, self.threads)
+        self.tell("ranking", 1, 1)
+        if not listed:
+            return (), refused, {}, int(held.sum())
+        named: dict[str, Candidate] = {}
+        for candidate in listed:
+            named[_unused(candidate.name, {*self.motions, *named})] = candidate
+        clips = {
+            name: candidate.of({**usable, **made}[candidate.source]) for name, candidate in named.items()
+        }
+        contest = self._contest(clips, named, refused, tracking, trials, failing)
+        choices, before = choose(
+            contest, at_most=at_most, progress=lambda done, of: self.tell("choosing", done, of)
+        )
+        self.tell("choosing", len(named), len(named))
+        return choices, refused, {choice.name: clips[choice.name] for choice in choices}, before
+
+    def _made(self, fill: Filler | None, like: Motion) -> dict[str, Motion]:
+        made: dict[str, Motion] = {}
+        if fill is None:
+            return made
+        wanted = with_straight(holes(self.before))
+        for number, ask in enumerate(wanted):
+            self.tell("making clips", number, len(wanted))
+            if (motion := fill(ask, like)) is not None:
+                made[_unused(f"made_{ask.name}.bvh", made)] = motion
+        self.tell("making clips", len(wanted), len(wanted))
+        return made
+
+    def _build(self, motions: Mapping[str, Motion], mirror: bool) -> Database:
+        return Database.build(
+            motions,
+            mirror=mirror,
+            schema=self.whole.schema,
+            rate=self.whole.rate,
+            normalization=self.whole.normalization,
+            **self.reading,
+        )
+
+    def _rows(
+        self, clips: Mapping[str, Motion], laid: set[str], made: set[str], refused: dict[str, str]
+    ) -> dict[Candidate, Rows]:
+        """The frames of every candidate; clips that cannot be used join ``refused``."""
+        try:
+            database = self._build(clips, mirror=True)
+        except DatasetError:
+            database = self._build(clips, mirror=False)
+        refused.update(database.excluded)
+        copies = bool(self.whole.mirrored.any())
+        number = {name: clip for clip, name in enumerate(database.clip_names)}
+        rows: dict[Candidate, Rows] = {}
+        for name in (name for name in clips if name in number):
+            image = number.get(f"{name} (mirrored)")
+            for candidate in (
+                (Candidate(name, made=True),)
+                if name in made
+                else variants(name, mirror=image is not None and not copies, laid=name in laid)
+            ):
+                of = [image] if candidate.mirrored else [number[name], *([image] if copies else [])]
+                parts = [rows_of(database, clip, candidate.factor) for clip in of if clip is not None]
+                rows[candidate] = joined(parts)
+        return rows
+
+    def _contest(
+        self,
+        clips: Mapping[str, Motion],
+        named: Mapping[str, Candidate],
+        refused: dict[str, str],
+        tracking: Tracking,
+        trials: np.ndarray[Any, np.dtype[np.intp]],
+        failing: np.ndarray[Any, np.dtype[np.intp]],
+    ) -> Contest:
+        """The dataset and the candidates that are tried, side by side."""
+        self.tell("preparing candidates", 0, 1)
+        database = self._build({**self.motions, **clips}, mirror=bool(self.whole.mirrored.any()))
+        refused.update({name: why for name, why in database.excluded.items() if name in clips})
+        self.tell("preparing candidates", 1, 1)
+        usable = {name: candidate for name, candidate in named.items() if name not in database.excluded}
+        profiles = self.simulation.profiles
+        return Contest(
+            database,
+            usable,
+            tuple(profiles[trial] for trial in trials.tolist()),
+            tracking,
+            np.searchsorted(trials, failing),
+            self.threads,
+        )
+
+
+def _steady(simulation: Simulation) -> tuple[Tracking, np.ndarray[Any, np.dtype[np.intp]]]:
+    """The trials that tell the holes: at one speed where there are such, timed where there are such."""
+    tracking: Tracking = "time" if "time" in simulation.logs else next(iter(simulation.logs))
+    steady = np.flatnonzero([trial.scenario == "constant" for trial in simulation.trials])
+    return tracking, steady if len(steady) else np.arange(len(simulation.trials))
+
+
+def _layer(like: Motion) -> Callable[[Motion], Motion]:
+    from gmr.skinning.driving.other_skeleton import retarget
+
+    return lambda motion: retarget(motion, like).motion
+
+
+def _unused(name: str, taken: Any) -> str:
+    """The name, or the first of "name_2.bvh", ... that is not taken."""
+    stem, dot, suffix = name.rpartition(".")
+    number, free = 1, name
+    while free in taken:
+        number += 1
+        free = f"{stem}_{number}{dot}{suffix}"
+    return free
