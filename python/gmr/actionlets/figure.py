@@ -170,13 +170,13 @@ def _trunk(body: Anatomy, places: Mapping[str, Floats], height: float) -> dict[s
 
 
 def _arm(body: Anatomy, places: Mapping[str, Floats], side: str) -> dict[str, Floats]:
-    wrist = places.get(f"{side}_wrist")
-    if wrist is None:
+    wrist, elbow = places.get(f"{side}_wrist"), places.get(f"{side}_elbow")
+    if wrist is None or elbow is None:
         return {}
     tip = body.tip(f"{side}_wrist")
     way = tip - wrist
     if not np.linalg.norm(way, axis=-1).max() > 0:
-        way = 0.4 * (wrist - places[f"{side}_elbow"])
+        way = 0.4 * (wrist - elbow)
     return {f"{side}_knuckle": wrist + 0.45 * way, f"{side}_hand": wrist + 0.95 * way}
 
 

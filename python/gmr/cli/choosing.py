@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 import shutil
 import textwrap
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 import click
 
@@ -19,9 +21,11 @@ if TYPE_CHECKING:
     from gmr.formats.folder import Takes
 
 __all__ = [
+    "Completing",
     "check_choosing",
     "choosing_options",
     "complete_folder",
+    "completing_options",
     "completion_words",
     "read_clips",
 ]
@@ -50,6 +54,58 @@ def choosing_options(command: Command) -> Command:
     return command
 
 
+@dataclass(frozen=True, slots=True)
+class Completing:
+    """What ``gmr evaluate --complete-from`` asks for."""
+
+    source: Path
+    out: Path
+    at_most: float | None
+    made: bool
+    retarget: bool
+
+
+def completing_options(command: Command) -> Command:
+    """``completing``: a :class:`Completing`, or None."""
+
+    @functools.wraps(command)
+    def gathered(
+        *args: Any,
+        complete_from: Path | None,
+        complete_out: Path,
+        at_most: float | None,
+        made: bool,
+        retarget: bool,
+        **others: Any,
+    ) -> Any:
+        check_choosing(complete_from, at_most, made, retarget, "--complete-from")
+        wanted = None
+        if complete_from is not None:
+            wanted = Completing(complete_from, complete_out, at_most, made, retarget)
+        return command(*args, completing=wanted, **others)
+
+    found: Any = choosing_options(gathered)
+    for option in reversed(_PLACES):
+        found = option(found)
+    return cast("Command", found)
+
+
+_PLACES: Final = (
+    click.option(
+        "--complete-from",
+        type=click.Path(exists=True, file_okay=False, path_type=Path),
+        help="Fill the holes from the clips of this folder, as gmr complete --from does.",
+    ),
+    click.option(
+        "--complete-out",
+        type=click.Path(file_okay=False, path_type=Path),
+        default=Path("completed"),
+        show_default=True,
+        help="Folder for the chosen clips and the page that shows before and after.",
+    ),
+)
+
+
 def check_choosing(
     source: Path | None, at_most: float | None, made: bool, retarget: bool, option: str
 ) -> None:
@@ -75,35 +131,34 @@ def read_clips(folder: Path, threads: int | None, phases: Phases) -> Takes:
 
 
 def complete_folder(
-    evaluation: Evaluation,
-    folder: Path,
-    source: Path,
-    out: Path,
-    phases: Phases,
-    *,
-    at_most: float | None,
-    made: bool,
-    retarget: bool,
-    **reading: Any,
+    evaluation: Evaluation, folder: Path, completing: Completing, phases: Phases, **reading: Any
 ) -> tuple[Completion, Path]:
-    """Complete an evaluated folder from another one, and write the page, the tables and the clips."""
+    """Complete an evaluated folder from another one, and write the page, the tables and the clips.
+
+    Args:
+        evaluation: of the folder.
+        folder: the dataset.
+        completing: what is asked for.
+        phases: told of progress.
+        reading: ``names``, ``unit`` and ``threads`` of the evaluation.
+    """
     from gmr.completion import complete_from, synthesised, write_completion
 
     threads = reading.get("threads")
     found = complete_from(
         dict(read_clips(folder, threads, phases)),
-        dict(read_clips(source, threads, phases)),
-        source=source.resolve().name,
+        dict(read_clips(completing.source, threads, phases)),
+        source=completing.source.resolve().name,
         dataset=evaluation.dataset,
-        at_most=at_most,
-        fill=synthesised() if made else None,
-        lay=retarget,
+        at_most=completing.at_most,
+        fill=synthesised() if completing.made else None,
+        lay=completing.retarget,
         before=evaluation,
         progress=phases.tell,
         **reading,
     )
-    with at_place(out):
-        return found, write_completion(found, out, source=source, progress=phases.tell)
+    with at_place(completing.out):
+        return found, write_completion(found, completing.out, source=completing.source, progress=phases.tell)
 
 
 def completion_words(found: Completion, written: Path) -> str:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import click
 
 from gmr.cli.cluster_options import check_workers, cluster_options
+from gmr.cli.choosing import Completing, complete_folder, completing_options, completion_words
 from gmr.cli.common import say
 from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.evaluation_results import as_object, in_words
@@ -38,6 +39,7 @@ Examples:
   gmr evaluate takes/ --prune 30% --prune-out smaller/     and the same in less
   gmr evaluate takes/ --prune lossless         without what no trial needs
   gmr evaluate takes/ --prune 30% --cluster tcp://10.0.0.1:8786
+  gmr evaluate takes/ --complete-from archive/ and what clips of another folder would add
   gmr evaluate takes/ --json > found.json      for a machine
 
 \b
@@ -87,6 +89,7 @@ Exit codes: 0 all files were evaluated, 1 some or all could not be (they are nam
 @evaluation_options
 @pruning_options
 @cluster_options
+@completing_options
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the verdict.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
 def evaluate(
@@ -109,6 +112,7 @@ def evaluate(
     prune_out: Path,
     workers: int | None,
     cluster: str | None,
+    completing: Completing | None,
     as_json: bool,
     quiet: bool,
 ) -> int:
@@ -162,10 +166,18 @@ def evaluate(
                 names=names,
                 unit=unit,
             )
+        completed = None
+        if completing is not None:
+            assert isinstance(found, gmr.Evaluation)
+            completed = complete_folder(
+                found, folders[0], completing, phases, threads=threads, names=names, unit=unit
+            )
         written = _write(found, None if no_report else out, tables, figures, phases, pruned)
     click.echo(as_object(found, written, pruned) if as_json else in_words(found, written))
     if pruned is not None and not as_json:
         click.echo(pruned.words())
+    if completed is not None:
+        click.echo("\n" + completion_words(*completed), err=as_json)
     for sentence in left_out(found.failed):
         say(sentence)
     return 1 if found.failed else 0

@@ -30,10 +30,7 @@ def from_folder(of: Completion) -> Iterator[str]:
         yield _in_order(of.choices)
         yield _scales(of)
     elif of.considered:
-        yield (
-            f"No clip of {of.source} takes away 2% of what the failing trials' searches cost without losing "
-            "a trial."
-        )
+        yield (f"No clip of {of.source} takes away 1% of what the trials lack without losing a trial.")
     yield from _refused(of)
 
 
@@ -48,9 +45,8 @@ def _in_order(choices: tuple[Choice, ...]) -> str:
     ]
     more = f" and {len(choices) - _TOLD} more" if len(choices) > _TOLD else ""
     return (
-        f"In this order each took away most cost per second of clip: {', '.join(told)}{more}; the "
-        f"searches of a trial that failed at first now cost {percent(choices[-1].cost_after)} of what they "
-        "did, on average."
+        f"In this order each took away most per second recorded: {', '.join(told)}{more}; what the trials "
+        f"lack of holding fell by {percent(1 - choices[-1].cost_after / choices[0].cost_before)}."
     )
 
 

@@ -1,12 +1,14 @@
-"""Which clips take away most of what failing trials cost, for each second of them: one after the other.
+"""Which clips take away most of what trials cost, for each second of them: one after the other.
 
-Candidates are ranked by a cheap bound: had the searches of the failing trials found the candidate's frames
-too, how much less they would have cost. The best few of each round are then tried: all trials are run
-again with each, and the one that takes away most cost per second of clip is chosen.
+What a trial costs is what it lacks of holding; see :mod:`gmr.completion.shortfall`. Candidates are ranked by
+a cheap bound: had the searches of the failing trials asked for the speed and turn rate alone, and found the
+candidate's frames too, how much less would they have cost? The best few of each round are then tried: all
+trials are run again with each, and the one that takes away most cost per second is chosen.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeVar
@@ -17,26 +19,27 @@ from numpy.typing import NDArray
 from gmr import _core
 from gmr.completion.candidates import Candidate
 from gmr.completion.queries import Queries, queries_of
+from gmr.completion.shortfall import shortfalls
 from gmr.completion.tempo import Rows, rows_of
 from gmr.matching.database import Database
 from gmr.matching.trial import Profile, Tracking, TrialLog, run_trials
-from gmr.pruning.outcomes import outcomes_of
 
-__all__ = ["Choice", "Contest", "bound", "choose", "search_costs", "shortlisted"]
+__all__ = ["Choice", "Contest", "bound", "choose", "on_plan", "shortlisted"]
 
 Name = TypeVar("Name")
 
 _QUERIES: Final = 400
 """Searches that the bound looks at."""
 
-_TRIED: Final = 6
-"""Candidates with which the trials are run again in each round."""
+_TRIED: Final = 8
+_TRIED_OF_ONE: Final = 2
+"""Candidates with which the trials are run again in each round, and how many of one clip in each order."""
 
-_LISTED: Final = 24
-"""Candidates that get as far as being tried, and of one clip at most:"""
-_OF_ONE_CLIP: Final = 2
+_LISTED: Final = 32
+_LISTED_OF_ONE: Final = 4
+"""Candidates that get as far as that."""
 
-_LEAST: Final = 0.02
+_LEAST: Final = 0.01
 """Share of the cost that a clip must take away to be worth having."""
 
 
@@ -48,9 +51,8 @@ class Choice:
         name: of the clip.
         candidate: what it is.
         seconds: how long it is.
-        bound: what the searches of the failing trials could save by it, in the same measure.
-        cost_before, cost_after: what the searches of the trials that failed at first cost without it and with
-            it, as a share of what they cost at first: the mean over these trials.
+        bound: squared distance that a search of the failing trials could save by it, on average.
+        cost_before, cost_after: what all trials lack of holding, added up, without it and with it.
         held: how many trials hold with it.
         tried: with how many candidates the trials were run in its round.
     """
@@ -66,8 +68,8 @@ class Choice:
 
     @property
     def gain(self) -> float:
-        """Cost taken away per second of clip."""
-        return (self.cost_before - self.cost_after) / self.seconds
+        """Cost taken away per second of the recording: to play it faster is no gain in itself."""
+        return (self.cost_before - self.cost_after) / (self.seconds * self.candidate.factor)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +80,6 @@ class Contest:
         database: scaled as the dataset by itself.
         candidates: by the names of their clips.
         profiles, tracking: the T trials.
-        failing: which of them failed at first.
         threads: how many to use.
     """
 
@@ -86,16 +87,23 @@ class Contest:
     candidates: Mapping[str, Candidate]
     profiles: tuple[Profile, ...]
     tracking: Tracking
-    failing: NDArray[np.intp]
     threads: int
 
     def run(self, names: Sequence[str]) -> TrialLog:
         """All trials on the dataset and some of the candidates."""
+        part = self._with(names)
+        return run_trials(part, self.profiles, tracking=self.tracking, threads=self.threads)
+
+    def asked(self, log: TrialLog, trials: NDArray[np.intp], names: Sequence[str]) -> Queries:
+        """What some trials of a log ask for by speed and turn rate alone, and what that costs with some
+        candidates."""
+        return on_plan(self._with(names), log, trials, self.threads)
+
+    def _with(self, names: Sequence[str]) -> Database:
         taken = np.array(
             [_recording(clip) not in self.candidates or _recording(clip) in names for clip in self._clips]
         )
-        part = self.database.subset(taken[self.database.clips])
-        return run_trials(part, self.profiles, tracking=self.tracking, threads=self.threads)
+        return self.database.subset(taken[self.database.clips])
 
     def shows(self, log: TrialLog, name: str) -> bool:
         """Whether a trial shows a frame of a clip."""
@@ -117,9 +125,8 @@ def choose(
 ) -> tuple[tuple[Choice, ...], int]:
     """Choose one clip after the other until none helps.
 
-    Each trial that failed at first counts alike: by what its searches cost, as a share of what they cost at
-    first. A clip helps when that falls by at least 2% on average, and no fewer trials hold. Clips that later
-    ones have made idle are left out at the end: a frame that is never shown has won no search, so that
+    A clip helps when all trials together lack at least 1% less with it, and no fewer of them hold. Clips that
+    later ones have made idle are left out at the end: a frame that is never shown has won no search, so that
     without it every trial is the same.
 
     Args:
@@ -132,22 +139,22 @@ def choose(
     """
     left = {name: contest.rows(name) for name in contest.candidates}
     log = contest.run(())
-    before = held = int(outcomes_of(log).held.sum())
-    first = search_costs(log, contest.failing)
-    cost = 1.0
+    lack = shortfalls(log)
+    before = held = int((lack == 0).sum())
     room = np.inf if at_most is None else at_most
     found: list[Choice] = []
     while left:
+        taken = [choice.name for choice in found]
         progress(len(found), len(contest.candidates))
-        fails = ~outcomes_of(log).held[contest.failing]
-        asked = queries_of(contest.database, log, contest.failing[fails], first[fails]).some(_QUERIES)
+        asked = contest.asked(log, np.flatnonzero(lack), taken)
         best: tuple[Choice, TrialLog] | None = None
+        cost = float(lack.sum())
         fitting = {name: rows for name, rows in left.items() if rows.seconds <= room}
-        ranked = _ranked(fitting, asked, contest.threads)[:_TRIED]
-        for name, saved in ranked:
-            again = contest.run([*(choice.name for choice in found), name])
-            after = float((search_costs(again, contest.failing) / first).mean())
-            holds = int(outcomes_of(again).held.sum())
+        ranked = _promising(fitting, contest.candidates, asked, contest.threads, _TRIED, _TRIED_OF_ONE)
+        for name, saved in ranked.items():
+            again = contest.run([*taken, name])
+            lacks = shortfalls(again)
+            after, holds = float(lacks.sum()), int((lacks == 0).sum())
             tried = Choice(
                 name, contest.candidates[name], left[name].seconds, saved, cost, after, holds, len(ranked)
             )
@@ -158,20 +165,26 @@ def choose(
             break
         choice, log = best
         found.append(choice)
-        cost, held, room = choice.cost_after, choice.held, room - choice.seconds
+        lack, held, room = shortfalls(log), choice.held, room - choice.seconds
         del left[choice.name]
     return tuple(choice for choice in found if contest.shows(log, choice.name)), before
 
 
 def shortlisted(rows: Mapping[Candidate, Rows], asked: Queries, threads: int) -> list[Candidate]:
-    """The candidates worth trying: best bound per second first, few of one clip."""
-    chosen: list[Candidate] = []
-    of_clip: dict[str, int] = {}
-    for candidate, _ in _ranked(rows, asked.some(_QUERIES), threads):
-        of_clip[candidate.source] = of_clip.get(candidate.source, 0) + 1
-        if of_clip[candidate.source] <= _OF_ONE_CLIP:
-            chosen.append(candidate)
-    return chosen[:_LISTED]
+    """The candidates worth trying, few of one clip."""
+    who = {candidate: candidate for candidate in rows}
+    return list(_promising(rows, who, asked, threads, _LISTED, _LISTED_OF_ONE))
+
+
+def on_plan(database: Database, log: TrialLog, trials: NDArray[np.intp], threads: int) -> Queries:
+    """Searches of some trials as if they were on their way: asked for the speed and turn rate alone, and what
+    that costs.
+
+    A character that strays asks for ever wilder ways back, to which no clip is the answer.
+    """
+    asked = queries_of(database, log, trials, "velocity").some(_QUERIES)
+    cost, _ = database.search(asked.features, threads=threads)
+    return Queries(asked.features, cost[:, 0].astype(np.float64))
 
 
 def bound(rows: Rows, asked: Queries, threads: int = 1) -> float:
@@ -179,14 +192,7 @@ def bound(rows: Rows, asked: Queries, threads: int = 1) -> float:
     if len(rows.features) == 0 or len(asked.cost) == 0:
         return 0.0
     cost, _ = _core.Index(rows.features).search(asked.features, 1, threads=threads)
-    return float((np.maximum(asked.cost - cost[:, 0], 0.0) / asked.unit).mean())
-
-
-def search_costs(log: TrialLog, trials: NDArray[np.intp]) -> NDArray[np.float64]:
-    """(K,) mean cost of the searches in the recorded part of each of some trials."""
-    cost = log.cost_pose[trials].astype(np.float64) + log.cost_trajectory[trials]
-    recorded = np.arange(cost.shape[1]) >= log.recorded_from[trials][:, None]
-    return np.asarray(np.nanmean(np.where(recorded, cost, np.nan), axis=1))
+    return float(np.maximum(asked.cost - cost[:, 0], 0.0).mean())
 
 
 def joined(parts: Sequence[Rows]) -> Rows:
@@ -194,11 +200,29 @@ def joined(parts: Sequence[Rows]) -> Rows:
     return Rows(np.concatenate([part.features for part in parts]), parts[0].seconds)
 
 
-def _ranked(rows: Mapping[Name, Rows], asked: Queries, threads: int) -> list[tuple[Name, float]]:
-    """Those that could save anything, most per second first, and how much."""
+def _promising(
+    rows: Mapping[Name, Rows],
+    who: Mapping[Name, Candidate],
+    asked: Queries,
+    threads: int,
+    most: int,
+    of_one: int,
+) -> dict[Name, float]:
+    """Those that could save most, per second recorded and in all by turns, and what: a short clip may save
+    much for its length, and yet too little to help."""
     saved = {name: bound(part, asked, threads) for name, part in rows.items()}
-    useful = [(name, gain) for name, gain in saved.items() if gain > 0]
-    return sorted(useful, key=lambda item: -item[1] / rows[item[0]].seconds)
+    useful = [name for name, gain in saved.items() if gain > 0]
+    per_second = sorted(useful, key=lambda name: -saved[name] / (rows[name].seconds * who[name].factor))
+    in_all = sorted(useful, key=lambda name: -saved[name])
+    chosen: dict[Name, float] = {}
+    for order in (per_second, in_all):
+        of_clip: Counter[str] = Counter()
+        room = len(chosen) + most // 2
+        for name in order:
+            if len(chosen) < room and name not in chosen and of_clip[who[name].source] < of_one:
+                of_clip[who[name].source] += 1
+                chosen[name] = saved[name]
+    return chosen
 
 
 def _recording(clip: str) -> str:

@@ -105,10 +105,13 @@ class Completion:
 
     @cached_property
     def chosen(self) -> Table:
-        """One row a choice, in order: the clip, where it comes from, its ``seconds``, the ``bound`` that it
-        was ranked by, the search cost of the trials that failed at first before and after (the mean share of what
-        it was at first), what it took away per second of clip (``gain``), how many trials hold with it, and how many
-        clips were tried."""
+        """One row a choice, in order.
+
+        The clip, where it comes from (``source``) and what was done to it (``how``); its ``seconds``; the
+        ``bound`` that it was ranked by; what all trials lack of holding without it and with it
+        (``cost_before``, ``cost_after``), and what it took away per second recorded (``gain``); how many
+        trials hold with it; and how many clips were tried in its round.
+        """
         rows = self.choices
         return Table(
             {

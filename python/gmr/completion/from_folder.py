@@ -11,10 +11,10 @@ from typing import Any, Final
 import numpy as np
 
 from gmr.completion.candidates import Candidate, on_skeleton, variants
-from gmr.completion.choosing import Choice, Contest, choose, joined, search_costs, shortlisted
+from gmr.completion.choosing import Choice, Contest, choose, joined, on_plan, shortlisted
 from gmr.completion.complete import Completion, Filler, Progress, with_straight
 from gmr.completion.holes import holes
-from gmr.completion.queries import queries_of
+from gmr.completion.shortfall import shortfalls
 from gmr.completion.tempo import Rows, rows_of
 from gmr.errors import DatasetError
 from gmr.evaluation.evaluate import evaluate
@@ -23,7 +23,6 @@ from gmr.evaluation.simulation import Simulation
 from gmr.matching.database import Database
 from gmr.matching.trial import Tracking
 from gmr.motion import Motion
-from gmr.pruning.outcomes import outcomes_of
 from gmr.threads import thread_count
 
 __all__ = ["complete_from"]
@@ -63,8 +62,8 @@ def complete_from(
             refused.
         before: the dataset's evaluation, where it is there already, with the settings that it was made with.
         progress: called with the name of a phase, how much of it is done, and of how much.
-        names, unit, threads, settings: of :func:`gmr.evaluate`, for both evaluations; trials at one speed only
-            by default.
+        names, unit, threads, settings: of :func:`gmr.evaluate`, for both evaluations; trials at one speed
+            only by default.
 
     Returns:
         Both evaluations, the clips chosen with what each took away, and the clips refused with why.
@@ -105,6 +104,7 @@ def complete_from(
         source=source,
         choices=choices,
         refused=refused,
+        considered=len(set(others) - set(refused)) if holes(before) else 0,
         held_before=held,
     )
 
@@ -136,7 +136,7 @@ class _Hunt:
         """The choices, what was refused and why, the chosen clips, and how many trials held before."""
         tracking, trials = _steady(self.simulation)
         log = self.simulation.logs[tracking]
-        held = outcomes_of(log).held[trials]
+        held = shortfalls(log)[trials] == 0
         failing = trials[~held]
         if not len(failing):
             return (), {}, {}, int(held.sum())
@@ -145,7 +145,7 @@ class _Hunt:
         made = self._made(fill, like)
         if not usable and not made:
             return (), refused, {}, int(held.sum())
-        asked = queries_of(self.whole, log, failing, search_costs(log, failing))
+        asked = on_plan(self.whole, log, failing, self.threads)
         self.tell("ranking", 0, 1)
         rows = self._rows({**usable, **made}, laid, set(made), refused)
         short = {name: part for name, part in rows.items() if at_most is None or part.seconds <= at_most}
@@ -159,7 +159,7 @@ class _Hunt:
         clips = {
             name: candidate.of({**usable, **made}[candidate.source]) for name, candidate in named.items()
         }
-        contest = self._contest(clips, named, refused, tracking, trials, failing)
+        contest = self._contest(clips, named, refused, tracking, trials)
         choices, before = choose(
             contest, at_most=at_most, progress=lambda done, of: self.tell("choosing", done, of)
         )
@@ -219,7 +219,6 @@ class _Hunt:
         refused: dict[str, str],
         tracking: Tracking,
         trials: np.ndarray[Any, np.dtype[np.intp]],
-        failing: np.ndarray[Any, np.dtype[np.intp]],
     ) -> Contest:
         """The dataset and the candidates that are tried, side by side."""
         self.tell("preparing candidates", 0, 1)
@@ -233,7 +232,6 @@ class _Hunt:
             usable,
             tuple(profiles[trial] for trial in trials.tolist()),
             tracking,
-            np.searchsorted(trials, failing),
             self.threads,
         )
 

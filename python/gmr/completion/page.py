@@ -33,8 +33,8 @@ _CHOICES = (
     Column("clip", "Clip"),
     Column("how", "How"),
     Column("seconds", "Length, s", ".1f"),
-    Column("cost_before", "Cost before", ".3f"),
-    Column("cost_after", "Cost after", ".3f"),
+    Column("cost_before", "Lacking before", ".2f"),
+    Column("cost_after", "Lacking after", ".2f"),
     Column("gain", "Taken away per s", ".4f"),
     Column("held", "Trials that hold", "d"),
     Column("played_seconds", "Played, s", ".1f"),
@@ -84,11 +84,12 @@ _METHOD = (
 
 _CHOSEN = (
     "Both evaluations run the same trials; the second one on the dataset and the chosen clips together.",
-    "Candidates are clips as they are, mirrored, and played 0.8, 0.9, 1.1 and 1.25 times as fast; synthesised "
-    "ones too where that was asked for.",
-    "They are ranked by what the searches of the failing trials could save by them per second; with the best "
-    "six all trials are run again, and the one that takes away most cost per second is kept, so long as no "
-    "fewer trials hold and the cost falls by 2% or more. Then the next one is looked for.",
+    "Candidates are clips as they are, mirrored, and played 0.8, 0.9, 1.1 and 1.25 times as fast; "
+    "synthesised ones too where that was asked for.",
+    "They are ranked by what searches for the speed and turn rate of the failing trials could save by them, "
+    "per second and in all; with the best eight all trials are run again. The one that takes away most of "
+    "what the trials lack, per second recorded, is kept, so long as no fewer trials hold and it takes away "
+    "1% or more; then the next one is looked for.",
     "For choosing, features are scaled as in the dataset by itself; for the second evaluation anew over "
     "both.",
 )
@@ -153,8 +154,8 @@ def _chosen(of: Completion) -> str:
         "div", element("button", "Save chosen.csv", type="button", data_save="chosen"), class_="controls"
     )
     lead = (
-        "Cost: the squared distances that the searches of a trial accept, as a share of what they were at "
-        "first; the mean over the trials that failed then."
+        "What trials lack, added up: nothing for one that holds, half for one whose worst error is twice the "
+        "limit, nearly one for one that is hopeless."
     )
     return section("clips", title, lead, save + html_table(shown, _CHOICES, f"{title}, sortable"))
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.matching.database import Database
-from gmr.matching.trial import Status, TrialLog
+from gmr.matching.trial import Status, Tracking, TrialLog
 
 __all__ = ["Queries", "queries_of"]
 
@@ -25,23 +25,21 @@ class Queries:
     Attributes:
         features: (Q, D) float32, scaled as the database's.
         cost: (Q,) squared distance of the row that was shown.
-        unit: (Q,) the cost that counts as 1: what the search's trial cost at first, on average.
     """
 
     features: NDArray[np.float32]
     cost: NDArray[np.float64]
-    unit: NDArray[np.float64]
 
     def some(self, most: int) -> Queries:
         """At most so many of them, evenly spread."""
         if len(self.cost) <= most:
             return self
         chosen = (np.arange(most) * len(self.cost)) // most
-        return Queries(self.features[chosen], self.cost[chosen], self.unit[chosen])
+        return Queries(self.features[chosen], self.cost[chosen])
 
 
 def queries_of(
-    database: Database, log: TrialLog, trials: NDArray[np.intp], units: NDArray[np.float64]
+    database: Database, log: TrialLog, trials: NDArray[np.intp], tracking: Tracking | None = None
 ) -> Queries:
     """The searches of the recorded part of some trials.
 
@@ -49,24 +47,25 @@ def queries_of(
         database: that the log is of.
         log: the trials.
         trials: (K,) which of them.
-        units: (K,) the cost that counts as 1 in each.
+        tracking: what the path ahead aims at; as in the trials where left out.
     """
     ahead = round(max(time for group in database.schema.groups for time in group.times) * log.rate)
-    features, costs, counted = [], [], []
-    for trial, unit in zip(trials.tolist(), units.tolist(), strict=True):
+    features, costs = [], []
+    for trial in trials.tolist():
         step = np.arange(log.recorded_from[trial] + 1, log.lengths[trial] - ahead)
         step = step[np.isin(log.status[trial, step], (Status.KEPT, Status.JUMPED))]
-        features.append(_asked(database, log, trial, step))
-        counted.append(np.full(len(step), unit))
+        features.append(_asked(database, log, trial, step, tracking or log.tracking))
         costs.append(log.cost_pose[trial, step].astype(np.float64) + log.cost_trajectory[trial, step])
     if not features:
-        return Queries(np.zeros((0, database.schema.dims), np.float32), np.zeros(0), np.ones(0))
-    return Queries(np.concatenate(features), np.concatenate(costs), np.concatenate(counted))
+        return Queries(np.zeros((0, database.schema.dims), np.float32), np.zeros(0))
+    return Queries(np.concatenate(features), np.concatenate(costs))
 
 
-def _asked(database: Database, log: TrialLog, trial: int, step: NDArray[np.int64]) -> NDArray[np.float32]:
+def _asked(
+    database: Database, log: TrialLog, trial: int, step: NDArray[np.int64], tracking: Tracking
+) -> NDArray[np.float32]:
     """(Q, D) the queries at some steps of a trial: the continuing rows' features, with the path wanted."""
-    query = database.features[log.row[trial, step - 1] + 1].copy()
+    query: NDArray[np.float32] = database.features[log.row[trial, step - 1] + 1].copy()
     scale = database.normalization
     slices = database.schema.slices()
     for group in database.schema.groups:
@@ -75,7 +74,7 @@ def _asked(database: Database, log: TrialLog, trial: int, step: NDArray[np.int64
         for number, time in enumerate(group.times):
             if time <= 0:
                 continue
-            x, z, turn = _target(log, trial, step, round(time * log.rate))
+            x, z, turn = _target(log, trial, step, round(time * log.rate), tracking)
             wanted = (np.sin(turn), np.cos(turn)) if group.measure == "root_facing" else (x, z)
             first = slices[group.name].start + 2 * number
             for column, values in enumerate(wanted, start=first):
@@ -84,10 +83,10 @@ def _asked(database: Database, log: TrialLog, trial: int, step: NDArray[np.int64
 
 
 def _target(
-    log: TrialLog, trial: int, step: NDArray[np.int64], ahead: int
+    log: TrialLog, trial: int, step: NDArray[np.int64], ahead: int, tracking: Tracking
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Where the root should be after so many steps, and how much it should have turned, in its own frame."""
-    if log.tracking == "velocity":
+    if tracking == "velocity":
         speed, rate = log.ref_speed[trial, step], log.ref_turn_rate[trial, step]
         turn = rate * ahead / log.rate
         way = speed * ahead / log.rate * np.sinc(turn / 2 / np.pi)

@@ -29,8 +29,8 @@ def rows_of(database: Database, clip: int, factor: float = 1.0) -> Rows:
     """The frames of a clip played ``factor`` times as fast.
 
     A pose stays, a velocity is ``factor`` times what it was, and the path ahead reaches ``factor`` times as
-    far into the clip; between frames it is interpolated. Built anew at that pace, a clip has these features but
-    for the smoothing of its root.
+    far into the clip; between frames it is interpolated. Built anew at that pace, a clip has these
+    features but for the smoothing of its root.
     """
     rows = database.clip_rows(clip)
     features, candidate = database.features[rows], database.candidates[rows]

@@ -1,0 +1,266 @@
+"""Holes of a dataset are filled from other clips, and each choice is what the trials say it is."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gmr
+from gmr.completion import Completion, complete_from, synthesised, write_completion
+from gmr.completion.candidates import Candidate, on_skeleton, variants
+from gmr.completion.choosing import bound, on_plan
+from gmr.completion.queries import queries_of
+from gmr.completion.shortfall import shortfalls
+from gmr.completion.tempo import rows_of
+from gmr.completion.words import headline, sentences
+from gmr.matching import Database, Profile, Status, run_trials
+from gmr.matching.trial import Tracking
+from gmr.pruning.outcomes import outcomes_of
+from walkers import CMU, walker
+
+DEMO = Path(gmr.__file__).parent / "data" / "demo"
+SPEEDS, TURNS = (1.2, 1.6), (-45.0, 0.0, 45.0)
+LEFT = float(np.radians(45.0))
+
+
+@pytest.fixture(scope="module")
+def straight() -> dict[str, gmr.Motion]:
+    return {"straight.bvh": walker(6, 1.2), "faster.bvh": walker(6, 1.6)}
+
+
+@pytest.fixture(scope="module")
+def others() -> dict[str, gmr.Motion]:
+    names = {part: f"other {name}" if part == "head" else name for part, name in CMU.items()}
+    return {
+        "turns/left.bvh": walker(8, 1.2, LEFT),
+        "stands.bvh": walker(4, 0.1),
+        "short.bvh": walker(0.5, 1.2, LEFT),
+        "odd.bvh": walker(8, 1.2, LEFT, names=names),
+    }
+
+
+@pytest.fixture(scope="module")
+def completed(straight: dict[str, gmr.Motion], others: dict[str, gmr.Motion]) -> Completion:
+    return complete_from(
+        straight, others, source="archive", dataset="two", speeds=SPEEDS, turn_rates_deg=TURNS
+    )
+
+
+def test_turns_are_filled_from_the_one_clip_that_turns_to_both_sides(completed: Completion) -> None:
+    before, after = completed.trials["held_before"], completed.trials["held_after"]
+    assert before.sum() == 2
+    assert after.sum() > before.sum() + 1
+    assert {choice.candidate.source for choice in completed.choices} == {"turns/left.bvh"}
+    assert {choice.candidate.mirrored for choice in completed.choices} == {False, True}
+
+
+def test_each_choice_takes_away_cost_and_loses_no_trial(completed: Completion) -> None:
+    assert completed.before.simulation is not None
+    log = completed.before.simulation.logs["time"]
+    held, cost = completed.held_before, float(shortfalls(log).sum())
+    for choice in completed.choices:
+        assert choice.cost_before == pytest.approx(cost)
+        assert choice.cost_after <= 0.99 * cost
+        assert choice.held >= held
+        assert choice.gain == pytest.approx(
+            (choice.cost_before - choice.cost_after) / (choice.seconds * choice.candidate.factor)
+        )
+        held, cost = choice.held, choice.cost_after
+
+
+def test_what_the_last_choice_says_is_what_the_chosen_files_do(
+    straight: dict[str, gmr.Motion], completed: Completion
+) -> None:
+    assert completed.before.simulation is not None
+    whole = completed.before.simulation
+    built = Database.build({**straight, **completed.added}, normalization=whole.database.normalization)
+    log = run_trials(built, whole.profiles)
+    assert outcomes_of(log).held.sum() == completed.choices[-1].held
+    assert shortfalls(log).sum() == pytest.approx(completed.choices[-1].cost_after)
+
+
+def test_what_cannot_be_used_is_refused_in_a_sentence(completed: Completion) -> None:
+    assert set(completed.refused) == {"odd.bvh"}
+    assert "without 'Head'" in completed.refused["odd.bvh"]
+    assert any("1 clip of archive was not considered (odd.bvh)" in each for each in sentences(completed))
+
+
+def test_no_more_seconds_are_chosen_than_asked_for(
+    straight: dict[str, gmr.Motion], others: dict[str, gmr.Motion]
+) -> None:
+    found = complete_from(straight, others, at_most=8.5, speeds=(1.2,), turn_rates_deg=TURNS)
+    assert 0 < sum(choice.seconds for choice in found.choices) <= 8.5
+    none = complete_from(
+        straight, others, source="archive", dataset="two", at_most=0.3, speeds=(1.2,), turn_rates_deg=TURNS
+    )
+    assert not none.added
+    assert headline(none).startswith("Nothing in archive helps: two does 1 of 3 trials.")
+
+
+def test_a_dataset_with_mirrored_copies_is_offered_none(
+    straight: dict[str, gmr.Motion], others: dict[str, gmr.Motion]
+) -> None:
+    found = complete_from(straight, others, mirror=True, speeds=(1.2,), turn_rates_deg=TURNS)
+    assert found.added
+    assert not any(choice.candidate.mirrored for choice in found.choices)
+    assert found.trials["held_after"].sum() == 3
+
+
+def test_a_dataset_without_holes_is_left_alone(straight: dict[str, gmr.Motion]) -> None:
+    found = complete_from(straight, {"more.bvh": walker(4, 1.2)}, speeds=(1.2,), turn_rates_deg=(0.0,))
+    assert found.after is found.before
+    assert headline(found).startswith("Nothing is missing")
+    assert not any("takes away" in sentence for sentence in sentences(found))
+
+
+def test_a_walk_is_chosen_where_a_walk_is_wanted() -> None:
+    runs = {name: gmr.read(DEMO / name) for name in ("09_01.bvh", "09_02.bvh")}
+    pool = {name: gmr.read(DEMO / name) for name in ("02_03.bvh", "07_02.bvh", "09_03.bvh", "09_11.bvh")}
+    found = complete_from(runs, pool, speeds=(1.2, 1.4), turn_rates_deg=(0.0,))
+    assert {choice.candidate.source for choice in found.choices} == {"07_02.bvh"}
+    assert found.choices[-1].held == 2
+
+
+@pytest.mark.parametrize("tracking", ["time", "velocity"])
+def test_queries_made_again_cost_what_was_logged(straight: dict[str, gmr.Motion], tracking: Tracking) -> None:
+    database = Database.build(straight)
+    log = run_trials(database, [Profile.constant(1.3, 0.4, record=6.0)], tracking=tracking)
+    asked = queries_of(database, log, np.array([0]))
+    step = np.arange(log.recorded_from[0] + 1, log.lengths[0] - 60)
+    step = step[np.isin(log.status[0, step], (Status.KEPT, Status.JUMPED))]
+    shown = database.features[log.row[0, step]].astype(np.float64)
+    cost = ((asked.features - shown) ** 2).sum(axis=1)
+    assert len(cost) > 20
+    np.testing.assert_allclose(cost, asked.cost, rtol=1e-3, atol=1e-4)
+
+
+def test_frames_that_are_there_already_can_save_nothing_and_those_that_are_lacking_can(
+    straight: dict[str, gmr.Motion],
+) -> None:
+    database = Database.build(straight)
+    log = run_trials(database, [Profile.constant(1.2, 0.4, record=6.0)])
+    asked = on_plan(database, log, np.array([0]), 1)
+    assert bound(rows_of(database, 0), asked) == pytest.approx(0.0, abs=1e-4)
+    better = Database.build({"turn": walker(6, 1.2, 0.4)}, normalization=database.normalization)
+    assert bound(rows_of(better, 0), asked) > 0.1
+
+
+def test_standing_still_is_no_cure(straight: dict[str, gmr.Motion]) -> None:
+    found = complete_from(straight, {"stands.bvh": walker(4, 0.0)}, speeds=(1.2,), turn_rates_deg=TURNS)
+    assert found.choices == () or found.choices[-1].held > found.held_before
+
+
+def test_what_a_trial_lacks_is_nothing_just_where_it_holds(straight: dict[str, gmr.Motion]) -> None:
+    database = Database.build(straight)
+    asked = [
+        Profile.constant(speed, turn, record=6.0) for speed in (1.2, 1.4, 3.0) for turn in (0.0, 0.1, 1.0)
+    ]
+    log = run_trials(database, asked)
+    lacks = shortfalls(log)
+    assert np.all((lacks >= 0) & (lacks < 1))
+    np.testing.assert_array_equal(lacks == 0, outcomes_of(log).held)
+    assert 0 < (lacks == 0).sum() < len(asked)
+
+
+@pytest.mark.parametrize("factor", [0.8, 1.25])
+def test_another_pace_is_that_of_a_clip_built_anew(factor: float) -> None:
+    clip = walker(6, 1.2, 0.5)
+    own = Database.build({"clip": clip})
+    quick = Candidate("clip", factor=factor).of(clip)
+    anew = Database.build({"clip": quick}, normalization=own.normalization, unit="m")
+    guessed, built = rows_of(own, 0, factor), rows_of(anew, 0)
+    assert guessed.seconds == pytest.approx(built.seconds, rel=0.01)
+    inner = slice(30, -30)
+    np.testing.assert_allclose(
+        guessed.features[inner].mean(axis=0), built.features[inner].mean(axis=0), atol=0.12
+    )
+    np.testing.assert_array_equal(rows_of(own, 0).features, own.features[own.candidates])
+
+
+def test_a_candidate_says_what_was_done_to_its_clip() -> None:
+    found = list(variants("a/b.bvh", mirror=True, laid=False))
+    assert len(found) == 10
+    assert len({candidate.name for candidate in found}) == 10
+    assert [candidate.name for candidate in found if candidate.whole] == ["b.bvh"]
+    assert {"as it is", "mirrored", "0.8 times as fast", "mirrored, 1.25 times as fast"} <= {
+        candidate.how for candidate in found
+    }
+    clip = walker(2, 1.2, 0.5)
+    turned = Candidate("b", mirrored=True, factor=0.8).of(clip)
+    assert turned.duration == pytest.approx(clip.duration / 0.8)
+    seen = clip.positions()[:, 0] * (-1, 1, 1)
+    np.testing.assert_allclose(turned.positions()[:, 0], seen, atol=1e-5)
+
+
+def test_another_skeleton_is_laid_on_the_datasets_where_that_is_asked_for(
+    straight: dict[str, gmr.Motion],
+) -> None:
+    like = straight["straight.bvh"]
+    strange = {"m.bvh": walker(1, 1.2, names={part: f"x{name}" for part, name in CMU.items()})}
+    usable, laid, refused = on_skeleton(strange, like.skeleton, lambda motion: like)
+    assert (set(usable), laid, refused) == ({"m.bvh"}, {"m.bvh"}, {})
+    usable, laid, refused = on_skeleton(strange, like.skeleton, None)
+    assert (usable, laid, set(refused)) == ({}, set(), {"m.bvh"})
+
+
+def test_made_clips_compete_where_that_is_asked_for(straight: dict[str, gmr.Motion]) -> None:
+    clips = {"09_01.bvh": gmr.read(DEMO / "09_01.bvh")}
+    pool = {"09_02.bvh": gmr.read(DEMO / "09_02.bvh")}
+    found = complete_from(clips, pool, fill=synthesised(seconds=2), speeds=(1.3,), turn_rates_deg=(0.0,))
+    assert [choice.candidate.how for choice in found.choices] == ["synthesised"]
+    assert found.trials["held_after"].all()
+
+
+def test_chosen_files_are_copied_whole_and_changed_ones_written(
+    completed: Completion, tmp_path: Path
+) -> None:
+    archive = tmp_path / "archive"
+    (archive / "turns").mkdir(parents=True)
+    gmr.write(walker(2, 1.2, LEFT), archive / "turns" / "left.bvh")
+    last = completed.choices[-1]
+    as_it_is = replace(last, name="left.bvh", candidate=Candidate("turns/left.bvh"))
+    found = replace(
+        completed,
+        added={**completed.added, "left.bvh": walker(2, 1.2, LEFT)},
+        choices=(*completed.choices, as_it_is),
+    )
+    page = write_completion(found, tmp_path / "out", source=archive)
+    clips = tmp_path / "out" / "clips"
+    assert (clips / "left.bvh").read_bytes() == (archive / "turns" / "left.bvh").read_bytes()
+    for choice in completed.choices:
+        toes = [
+            motion.positions(joints=["LeftToeBase"])
+            for motion in (gmr.read(clips / choice.name), completed.added[choice.name])
+        ]
+        np.testing.assert_allclose(*toes, atol=1e-4)
+    told = json.loads((tmp_path / "out" / "manifest.json").read_text(encoding="utf-8"))
+    assert [clip["clip"] for clip in told["clips"]] == list(found.added)
+    assert told["refused"] == dict(completed.refused)
+    assert headline(found) in page.read_text(encoding="utf-8")
+    assert len((tmp_path / "out" / "chosen.csv").read_text().splitlines()) == len(found.choices) + 1
+
+
+def test_both_commands_choose_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from gmr.cli.commands import gmr as command
+    from gmr.cli.common import finished
+
+    takes, archive = tmp_path / "takes", tmp_path / "archive"
+    takes.mkdir()
+    archive.mkdir()
+    gmr.write(walker(5, 1.2), takes / "straight.bvh")
+    gmr.write(walker(6, 1.2, LEFT), archive / "left.bvh")
+    asked = ["--speeds", "1.2", "--turn-rates", "0,45", "-q"]
+    one, two = tmp_path / "one", tmp_path / "two"
+    assert finished(command, ["complete", str(takes), "--from", str(archive), "-o", str(one), *asked]) == 0
+    evaluate = ["evaluate", str(takes), "--complete-from", str(archive), "--complete-out", str(two)]
+    assert finished(command, [*evaluate, "--no-report", "--scenario", "constant", *asked]) == 0
+    said = capsys.readouterr().out
+    assert said.count("chosen from archive") == 2
+    assert (one / "chosen.csv").read_bytes() == (two / "chosen.csv").read_bytes()
+    files = [sorted(path.name for path in (out / "clips").iterdir()) for out in (one, two)]
+    assert files[0] == files[1]
+    assert finished(command, ["complete", str(takes), "--made"]) == 2
