@@ -232,11 +232,11 @@ def test_chosen_files_are_copied_whole_and_changed_ones_written(
     clips = tmp_path / "out" / "clips"
     assert (clips / "left.bvh").read_bytes() == (archive / "turns" / "left.bvh").read_bytes()
     for choice in completed.choices:
-        toes = [
+        written, made = (
             motion.positions(joints=["LeftToeBase"])
             for motion in (gmr.read(clips / choice.name), completed.added[choice.name])
-        ]
-        np.testing.assert_allclose(*toes, atol=1e-4)
+        )
+        np.testing.assert_allclose(written, made, atol=1e-4)
     told = json.loads((tmp_path / "out" / "manifest.json").read_text(encoding="utf-8"))
     assert [clip["clip"] for clip in told["clips"]] == list(found.added)
     assert told["refused"] == dict(completed.refused)
