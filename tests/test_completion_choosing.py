@@ -79,7 +79,7 @@ def test_what_the_last_choice_says_is_what_the_chosen_files_do(
     whole = completed.before.simulation
     built = Database.build({**straight, **completed.added}, normalization=whole.database.normalization)
     log = run_trials(built, whole.profiles)
-    assert outcomes_of(log).held.sum() == completed.choices[-1].held
+    assert outcomes_of(log, whole.trials).held.sum() == completed.choices[-1].held
     assert shortfalls(log).sum() == pytest.approx(completed.choices[-1].cost_after)
 
 
@@ -162,7 +162,7 @@ def test_what_a_trial_lacks_is_nothing_just_where_it_holds(straight: dict[str, g
     log = run_trials(database, asked)
     lacks = shortfalls(log)
     assert np.all((lacks >= 0) & (lacks < 1))
-    np.testing.assert_array_equal(lacks == 0, outcomes_of(log).held)
+    np.testing.assert_array_equal(lacks == 0, outcomes_of(log, asked).held)
     assert 0 < (lacks == 0).sum() < len(asked)
 
 

@@ -29,6 +29,9 @@ __all__ = ["complete_from"]
 
 _AS_EVALUATED: Final = ("preset", "scenarios", "mirror", "tracking", "speeds", "turn_rates_deg")
 
+_ON_THE_GRID: Final = ("constant", "switching")
+"""Scenarios of which the holes are known by speed and turn rate; others are not run again."""
+
 
 def complete_from(
     motions: Mapping[str, Motion],
@@ -84,6 +87,8 @@ def complete_from(
         before = evaluate(motions, progress=phase("before"), **reading, **settings)
     else:
         settings = {name: before.summary.settings[name] for name in _AS_EVALUATED}
+        grid = [name for name in settings["scenarios"] if name in _ON_THE_GRID]
+        settings["scenarios"] = grid or "constant"
     assert before.simulation is not None
     hunt = _Hunt(before, motions, {"names": names, "unit": unit}, thread_count(threads), tell)
     choices, refused, added, held = hunt.found(others, fill, lay, at_most)
