@@ -17,6 +17,8 @@ from gmr.completion.queries import queries_of
 from gmr.completion.shortfall import shortfalls
 from gmr.completion.tempo import rows_of
 from gmr.completion.words import headline, sentences
+from gmr.evaluation.scenario import constant_trials
+from gmr.evaluation.simulation import simulated
 from gmr.matching import Database, Profile, Status, run_trials
 from gmr.matching.trial import Tracking
 from gmr.pruning.outcomes import outcomes_of
@@ -156,10 +158,8 @@ def test_standing_still_is_no_cure(straight: dict[str, gmr.Motion]) -> None:
 
 def test_what_a_trial_lacks_is_nothing_just_where_it_holds(straight: dict[str, gmr.Motion]) -> None:
     database = Database.build(straight)
-    asked = [
-        Profile.constant(speed, turn, record=6.0) for speed in (1.2, 1.4, 3.0) for turn in (0.0, 0.1, 1.0)
-    ]
-    log = run_trials(database, asked)
+    asked = constant_trials((1.2, 1.4, 3.0), (0.0, 6.0, 60.0))
+    log = simulated(database, asked, ("time",), threads=1, progress=lambda done, of: None).logs["time"]
     lacks = shortfalls(log)
     assert np.all((lacks >= 0) & (lacks < 1))
     np.testing.assert_array_equal(lacks == 0, outcomes_of(log, asked).held)
