@@ -130,6 +130,8 @@ def evaluate(
     if len(folders) > 1 and prune is not None:
         raise click.UsageError("--prune makes one dataset smaller; give one folder.")
     check_workers(workers, cluster)
+    if len(folders) > 1 and completing is not None:
+        raise click.UsageError("--complete-from completes one dataset; give one folder.")
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):
         _check_places(None if no_report else out, tables, figures, phases)
