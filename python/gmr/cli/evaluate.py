@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import click
 
-from gmr.cli.cluster_options import check_workers, cluster_options
 from gmr.cli.choosing import Completing, complete_folder, completing_options, completion_words
+from gmr.cli.cluster_options import check_workers, cluster_options
 from gmr.cli.common import say
 from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.evaluation_results import as_object, in_words
