@@ -283,3 +283,17 @@ def test_a_scenario_that_cannot_be_is_wrong_usage(
     (tmp_path / "bad.csv").write_text("x,z\n0,far\n1,1\n")
     assert run(folder, "--no-report", "--scenario", scenario) == 2
     assert says in capsys.readouterr().err
+
+
+def test_weights_are_tuned_where_asked(folder: Path, tmp_path: Path, capsys: Captured) -> None:
+    grid = ("--speeds", "1,2", "--turn-rates", "-50:50:50", "--scenario", "constant", "--tune")
+    assert run(folder, *grid, "-o", tmp_path / "report.html") == 0
+    said = capsys.readouterr()
+    assert "weights of the features" in said.out or "Weigh the features anew" in said.out
+    assert "tuning" in said.err
+    assert "tuning_cells" in (tmp_path / "report.html").read_text()
+    assert run(folder, *grid, "--no-report", "--json") == 0
+    found = json.loads(capsys.readouterr().out)["tuned"]
+    assert set(found["weights"]) >= {"hips velocity", "trajectory facing"}
+    assert len(found["trials"]) == 6
+    assert run(folder, folder, "--tune") == 2

@@ -17,11 +17,13 @@ from gmr.cli.outcome import at_place, left_out, trouble_with_files
 from gmr.cli.progress import Phases
 from gmr.cli.pruning import Pruned, check_pruning, prune_folder, pruning_options
 from gmr.cli.scenarios import check_scenarios, scenario_options
+from gmr.cli.tuning import Tuned, tune_evaluation, tuning_option
 
 if TYPE_CHECKING:
     from gmr.evaluation import Comparison, Evaluation
     from gmr.evaluation.scenarios.asked import Asked
     from gmr.matching.trial import Tracking
+    from gmr.pages.section import Section
 
 EXAMPLES: Final = """
 \b
@@ -40,6 +42,7 @@ Examples:
   gmr evaluate takes/ --prune lossless         without what no trial needs
   gmr evaluate takes/ --prune 30% --cluster tcp://10.0.0.1:8786
   gmr evaluate takes/ --complete-from archive/ and what clips of another folder would add
+  gmr evaluate takes/ --tune                   would other weights of the features do better?
   gmr evaluate takes/ --json > found.json      for a machine
 
 \b
@@ -90,6 +93,7 @@ Exit codes: 0 all files were evaluated, 1 some or all could not be (they are nam
 @pruning_options
 @cluster_options
 @completing_options
+@tuning_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the verdict.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
 def evaluate(
@@ -113,6 +117,7 @@ def evaluate(
     workers: int | None,
     cluster: str | None,
     completing: Completing | None,
+    tune: bool,
     as_json: bool,
     quiet: bool,
 ) -> int:
@@ -132,6 +137,8 @@ def evaluate(
     check_workers(workers, cluster)
     if len(folders) > 1 and completing is not None:
         raise click.UsageError("--complete-from completes one dataset; give one folder.")
+    if len(folders) > 1 and tune:
+        raise click.UsageError("--tune finds the weights of one dataset; give one folder.")
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):
         _check_places(None if no_report else out, tables, figures, phases)
@@ -153,10 +160,10 @@ def evaluate(
             unit=unit,
             progress=phases.tell,
         )
-        pruned = None
+        added: dict[str, Pruned | Tuned] = {}
         if prune is not None:
             assert isinstance(found, gmr.Evaluation)
-            pruned = prune_folder(
+            added["pruned"] = prune_folder(
                 found,
                 folders[0],
                 prune,
@@ -168,16 +175,20 @@ def evaluate(
                 names=names,
                 unit=unit,
             )
+        if tune:
+            assert isinstance(found, gmr.Evaluation)
+            added["tuned"] = tune_evaluation(found, threads=threads, progress=phases.tell)
         completed = None
         if completing is not None:
             assert isinstance(found, gmr.Evaluation)
             completed = complete_folder(
                 found, folders[0], completing, phases, threads=threads, names=names, unit=unit
             )
-        written = _write(found, None if no_report else out, tables, figures, phases, pruned)
-    click.echo(as_object(found, written, pruned) if as_json else in_words(found, written))
-    if pruned is not None and not as_json:
-        click.echo(pruned.words())
+        sections = [each.section() for each in added.values()]
+        written = _write(found, None if no_report else out, tables, figures, phases, sections)
+    click.echo(as_object(found, written, added) if as_json else in_words(found, written))
+    for each in added.values() if not as_json else ():
+        click.echo(each.words())
     if completed is not None:
         click.echo("\n" + completion_words(*completed), err=as_json)
     for sentence in left_out(found.failed):
@@ -216,7 +227,7 @@ def _write(
     tables: Path | None,
     figures: Path | None,
     phases: Phases,
-    pruned: Pruned | None,
+    sections: Sequence[Section],
 ) -> dict[str, Any]:
     """Write what was asked for; the answer says where it lies."""
     written: dict[str, Any] = {}
@@ -240,7 +251,7 @@ def _write(
             if isinstance(found, Comparison):
                 found.report(out)
             else:
-                found.report(out, *([] if pruned is None else [pruned.section()]))
+                found.report(out, *sections)
         written["report"] = str(out)
         phases.tell("writing the report", 1, 1)
     return written

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from gmr.cli.pruning import Pruned
+    from gmr.cli.tuning import Tuned
     from gmr.evaluation import Comparison, Evaluation, Verdict
 
 __all__ = ["as_object", "in_words"]
@@ -37,7 +38,7 @@ def in_words(found: Evaluation | Comparison, written: Mapping[str, Any]) -> str:
 
 
 def as_object(
-    found: Evaluation | Comparison, written: Mapping[str, Any], pruned: Pruned | None = None
+    found: Evaluation | Comparison, written: Mapping[str, Any], added: Mapping[str, Pruned | Tuned]
 ) -> str:
     """The figures as JSON: of one dataset as they are, of several as a list, with the verdict on all."""
     evaluations = _evaluations(found)
@@ -49,8 +50,7 @@ def as_object(
             "failed": dict(found.failed),
         }
     told["written"] = dict(written)
-    if pruned is not None:
-        told["pruned"] = pruned.summary()
+    told |= {name: each.summary() for name, each in added.items()}
     return json.dumps(told, indent=2, ensure_ascii=False)
 
 

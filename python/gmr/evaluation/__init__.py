@@ -10,6 +10,7 @@ from gmr.evaluation.comparison import Comparison, comparison_of
 from gmr.evaluation.result import Evaluation, Replay, Summary, Tables, Verdict
 from gmr.evaluation.scenario import Segment, Trial
 from gmr.evaluation.scenarios import PathPoints, Scenario, Slalom, Splines, StartStop
+from gmr.evaluation.tuning import Tuning, tune
 from gmr.table import Table
 
 __all__ = [
@@ -26,6 +27,8 @@ __all__ = [
     "Table",
     "Tables",
     "Trial",
+    "Tuning",
     "Verdict",
     "comparison_of",
+    "tune",
 ]

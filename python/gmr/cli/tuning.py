@@ -1,0 +1,79 @@
+"""``gmr evaluate FOLDER --tune``: whether other weights of the features do better."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import textwrap
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+if TYPE_CHECKING:
+    from gmr.evaluation import Evaluation
+    from gmr.evaluation.tuning import Tuning
+    from gmr.pages.section import Section
+
+__all__ = ["Tuned", "tune_evaluation", "tuning_option"]
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """What was found."""
+
+    found: Tuning
+
+    def words(self) -> str:
+        """For a terminal."""
+        from gmr.evaluation.tuning.words import headline, sentences
+
+        width = min(shutil.get_terminal_size((100, 24)).columns, 100)
+        lines = ["", *textwrap.wrap(headline(self.found), width), ""]
+        for sentence in sentences(self.found):
+            lines += textwrap.wrap(sentence, width, initial_indent="- ", subsequent_indent="  ")
+        return "\n".join(lines)
+
+    def section(self) -> Section:
+        """For the report."""
+        from gmr.evaluation.tuning.section import tuning_section
+
+        return tuning_section(self.found)
+
+    def summary(self) -> dict[str, Any]:
+        """For a machine: plain values."""
+        from gmr.evaluation.tuning.words import headline, sentences
+
+        found = self.found
+        return {
+            "headline": headline(found),
+            "sentences": list(sentences(found)),
+            "improves": found.improves,
+            "weights": dict(found.weights),
+            "gain": {
+                name: value if math.isfinite(value) else None for name, value in found.gain._asdict().items()
+            },
+            "trials": list(found.trials.rows()),
+            "search": list(found.search.rows()),
+        }
+
+
+def tuning_option(command: Command) -> Command:
+    """``tune``."""
+    return click.option(
+        "--tune",
+        is_flag=True,
+        help="Search for better weights of the features on half of the grid; prove them on the rest.",
+    )(command)
+
+
+def tune_evaluation(
+    evaluation: Evaluation, *, threads: int | None, progress: Callable[[str, int, int], object]
+) -> Tuned:
+    """Tune the weights for what was evaluated."""
+    from gmr.evaluation.tuning import tune
+
+    return Tuned(tune(evaluation, threads=threads, progress=progress))
