@@ -328,6 +328,7 @@ def test_scenarios_run_beside_the_grid_and_the_verdict_judges_the_grid(
     assert trials["scenario"].tolist() == ["constant"] * 2 + ["hurry"] + ["splines"] * 2 + ["l"]
     assert trials["path"].tolist() == ["", "", "path 1", "path 1", "path 2", "1 m/s"]
     assert found.summary.settings["scenarios"] == ["constant", "hurry", "splines", "l"]
+    assert found.summary.settings["seed"] == 0
     assert found.verdict.headline.endswith("1 m/s.")
     assert "of 2" in found.verdict.headline or "2 trials" in found.verdict.headline
     for name in ("hurry", "splines", "l"):

@@ -147,6 +147,7 @@ def evaluate(
     settings = {
         "preset": preset or "even",
         "scenarios": [scenario.name for scenario in asked],
+        "seed": seed,
         "mirror": mirror,
         "tracking": list(trackings),
         "speeds": sorted(map(float, grid.speeds)),
