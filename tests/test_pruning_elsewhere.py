@@ -16,7 +16,7 @@ from clusters import Cluster, cluster
 from gmr.cli.commands import gmr as command
 from gmr.cli.common import finished
 from gmr.evaluation import Evaluation
-from gmr.evaluation.elsewhere import Asked
+from gmr.evaluation.elsewhere import Runs
 from gmr.matching.trial import TrialLog, run_trials
 from gmr.pruning import Pruning, prune
 from gmr.pruning.outcomes import Outcomes
@@ -96,7 +96,7 @@ class Killing:
     def __init__(self, held: Cluster) -> None:
         self.held = held
 
-    def __call__(self, asked: Asked, jobs: Sequence[Again]) -> Iterator[tuple[int, Outcomes | None]]:
+    def __call__(self, asked: Runs, jobs: Sequence[Again]) -> Iterator[tuple[int, Outcomes | None]]:
         for result in elsewhere(cluster=self.held.address)(asked, jobs):
             yield result
             self.held.workers[0].kill()

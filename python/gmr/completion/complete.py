@@ -1,6 +1,6 @@
 """A dataset is evaluated, what it cannot do is made, and it is evaluated again: with what got worse.
 
-Source: spec of dataset evaluation, completion. The clips are judged by what the character does with them, not
+The clips are judged by what the character does with them, not
 by what they hold: the second evaluation runs every trial of the first again.
 """
 

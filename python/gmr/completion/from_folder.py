@@ -1,6 +1,6 @@
 """A dataset completed from other clips: those that take most away from what its failing trials cost.
 
-Source: spec of dataset evaluation, completion; see :mod:`gmr.completion.choosing` for how clips are chosen.
+See :mod:`gmr.completion.choosing` for how clips are chosen.
 """
 
 from __future__ import annotations

@@ -16,14 +16,14 @@ from gmr.evaluation.simulation import Simulation, profile_of
 from gmr.matching.database import Database
 from gmr.matching.trial import Profile, Status, Tracking, TrialLog, run_trials
 
-__all__ = ["Asked", "simulated_elsewhere"]
+__all__ = ["Runs", "simulated_elsewhere"]
 
 _TOGETHER: Final = 9
 """Trials of a job: some tens of milliseconds of work, so that sending it costs little beside."""
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class Runs:
     """What all runs are made of: T trials, each once for every tracking."""
 
     database: Database
@@ -32,7 +32,7 @@ class Asked:
     trackings: tuple[Tracking, ...]
 
     @classmethod
-    def of(cls, simulation: Simulation) -> Asked:
+    def of(cls, simulation: Simulation) -> Runs:
         """As a simulation asked it."""
         return cls(simulation.database, simulation.trials, simulation.profiles, tuple(simulation.logs))
 
@@ -55,7 +55,7 @@ def simulated_elsewhere(
         workers, cluster: as for :func:`gmr.cluster.results`.
         progress: called with the number of runs done and of all runs.
     """
-    asked = Asked(database, tuple(trials), tuple(profile_of(trial) for trial in trials), tuple(trackings))
+    asked = Runs(database, tuple(trials), tuple(profile_of(trial) for trial in trials), tuple(trackings))
     firsts = range(0, len(trials), _TOGETHER)
     jobs = [(tracking, first) for tracking in trackings for first in firsts]
     found: dict[tuple[Tracking, int], TrialLog] = {}
@@ -70,7 +70,7 @@ def simulated_elsewhere(
     return Simulation(database, tuple(trials), logs)
 
 
-def _some(asked: Asked, job: tuple[Tracking, int]) -> TrialLog:
+def _some(asked: Runs, job: tuple[Tracking, int]) -> TrialLog:
     """The log of one job."""
     tracking, first = job
     return run_trials(asked.database, asked.profiles[first : first + _TOGETHER], tracking=tracking, threads=1)

@@ -1,9 +1,9 @@
 """Quality for size: frames go, those that matter least first, and after each step the trials are run again.
 
-Source: spec of dataset evaluation, pruning (b). What nobody needs goes first, the longest ranges before the
-others; from there on a greedy search: of the moves that touch least of what is played (a range goes, or a
-second at one of its ends) each is simulated alone, those that cost least a second are made until a step is
-full, and all of it is simulated again together.
+What nobody needs goes first, the longest ranges before the others; from there on a greedy search: of the
+moves that touch least of what is played (a range goes, or a second at one of its ends) each is simulated
+alone, those that cost least a second are made until a step is full, and all of it is simulated again
+together.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.errors import GmrError
-from gmr.evaluation.elsewhere import Asked
+from gmr.evaluation.elsewhere import Runs
 from gmr.matching.database import Database
 from gmr.pruning.lossless import lossless_part
 from gmr.pruning.outcomes import Outcomes, Score, needed_rows
@@ -116,7 +116,7 @@ class _Move:
 
 
 def curve_of(
-    asked: Asked, outcomes: Outcomes, rerun: Rerun, progress: Progress, goal: float, until: float
+    asked: Runs, outcomes: Outcomes, rerun: Rerun, progress: Progress, goal: float, until: float
 ) -> Curve:
     """Remove frames until a share of the seconds is gone, or nothing more can go.
 
@@ -168,7 +168,7 @@ def _unneeded_go(database: Database, part: Part, lossless: Part, goal: float) ->
 
 
 def _step(
-    asked: Asked, part: Part, outcomes: Outcomes, rerun: Rerun, seconds: float
+    asked: Runs, part: Part, outcomes: Outcomes, rerun: Rerun, seconds: float
 ) -> tuple[Part, Outcomes] | None:
     """What is left when the cheapest moves of so many seconds are made, and what becomes of the runs."""
     database = asked.database
@@ -189,7 +189,7 @@ def _step(
 
 
 def _made(
-    asked: Asked, part: Part, outcomes: Outcomes, rerun: Rerun, moves: list[_Move], seconds: float
+    asked: Runs, part: Part, outcomes: Outcomes, rerun: Rerun, moves: list[_Move], seconds: float
 ) -> tuple[Part, Outcomes] | None:
     """Make moves in their order until so many seconds are gone; fewer where nothing would be left to play."""
     database, begun = asked.database, part.seconds

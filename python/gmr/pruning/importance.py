@@ -1,6 +1,6 @@
 """How much each clip matters: every trial that shows it is run again without it.
 
-Source: spec of dataset evaluation, pruning (c). A trial that never shows a clip is the same without it, bit
+A trial that never shows a clip is the same without it, bit
 by bit, so only the others are run.
 """
 
@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gmr.evaluation.elsewhere import Asked
+from gmr.evaluation.elsewhere import Runs
 from gmr.pruning.outcomes import Outcomes, needed_rows
 from gmr.pruning.part import recordings_of, whole
 from gmr.pruning.rerun import Again, Rerun
@@ -21,7 +21,7 @@ __all__ = ["importance_table"]
 Progress = Callable[[int, int], object]
 
 
-def importance_table(asked: Asked, outcomes: Outcomes, rerun: Rerun, progress: Progress) -> Table:
+def importance_table(asked: Runs, outcomes: Outcomes, rerun: Rerun, progress: Progress) -> Table:
     """What it costs to leave out each recording, alone.
 
     Args:

@@ -1,9 +1,9 @@
 """What can go from a dataset without a bit of any trial changing, and the proof.
 
-Source: spec of dataset evaluation, pruning (a). A frame is needed when a trial shows it, when it tells what
-comes after one that is shown, or when the features of a needed frame look at it: a second ahead, and as far
-around as the simulation root is smoothed. All others can go: a search that found its frame among all finds it
-among fewer, and ties still go to the lowest.
+A frame is needed when a trial shows it, when it tells what comes after one that is shown, or when the
+features of a needed frame look at it: a second ahead, and as far around as the simulation root is smoothed.
+All others can go: a search that found its frame among all finds it among fewer, and ties still go to the
+lowest.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.errors import GmrError
-from gmr.evaluation.elsewhere import Asked
+from gmr.evaluation.elsewhere import Runs
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.simulation import Simulation
 from gmr.matching.database import Database
@@ -103,7 +103,7 @@ def prove(simulation: Simulation, part: Part, threads: int = 0) -> None:
     Raises:
         GmrError: a run is another one.
     """
-    asked = Asked.of(simulation)
+    asked = Runs.of(simulation)
     runs = np.arange(len(asked.profiles) * len(asked.trackings))
     logs = logs_on(asked, Again(part.rows(simulation.database), runs), threads)
     same = np.zeros(len(runs), bool) if logs is None else same_bits(simulation, logs)

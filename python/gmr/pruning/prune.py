@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from gmr.evaluation.elsewhere import Asked
+from gmr.evaluation.elsewhere import Runs
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.simulation import Simulation
 from gmr.pruning.curve import Curve, Point, curve_of
@@ -86,7 +86,7 @@ def prune(
     left = lossless_part(simulation.database, outcomes)
     prove(simulation, left, threads)
     tell("proving what can go", 1, 1)
-    asked = Asked.of(simulation)
+    asked = Runs.of(simulation)
     importance = importance_table(
         asked, outcomes, again, lambda done, of: tell("leaving out each clip", done, of)
     )

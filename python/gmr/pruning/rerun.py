@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gmr.cluster import results
 from gmr.errors import DatasetError
-from gmr.evaluation.elsewhere import Asked
+from gmr.evaluation.elsewhere import Runs
 from gmr.matching.trial import Tracking, TrialLog, run_trials
 from gmr.pruning.outcomes import Outcomes, joined, outcomes_of
 
@@ -34,12 +34,12 @@ class Again:
     runs: NDArray[np.intp]
 
 
-Rerun: TypeAlias = Callable[[Asked, Sequence[Again]], Iterator[tuple[int, Outcomes | None]]]
+Rerun: TypeAlias = Callable[[Runs, Sequence[Again]], Iterator[tuple[int, Outcomes | None]]]
 """Makes runs again, several times: the number of each and what became of it, in the order in which they are
 done; None where nothing is left that may be jumped to."""
 
 
-def made_again(asked: Asked, again: Again) -> Outcomes | None:
+def made_again(asked: Runs, again: Again) -> Outcomes | None:
     """One of them, on this thread."""
     logs = logs_on(asked, again)
     if logs is None:
@@ -53,7 +53,7 @@ def made_again(asked: Asked, again: Again) -> Outcomes | None:
     )
 
 
-def places_of(asked: Asked, again: Again) -> Iterator[tuple[Tracking, list[int]]]:
+def places_of(asked: Runs, again: Again) -> Iterator[tuple[Tracking, list[int]]]:
     """The trackings that there are runs of, each with the places of its trials."""
     count = len(asked.trials)
     for number, tracking in enumerate(asked.trackings):
@@ -62,7 +62,7 @@ def places_of(asked: Asked, again: Again) -> Iterator[tuple[Tracking, list[int]]
             yield tracking, places
 
 
-def logs_on(asked: Asked, again: Again, threads: int = 1) -> list[TrialLog] | None:
+def logs_on(asked: Runs, again: Again, threads: int = 1) -> list[TrialLog] | None:
     """The logs of some runs on a part of the database, one for each tracking that there are runs of."""
     try:
         part = asked.database.subset(again.left)
@@ -78,7 +78,7 @@ def here(threads: int = 0) -> Rerun:
     """On threads of this process; 0: as many as there are cores."""
     count = threads or os.cpu_count() or 1
 
-    def run(asked: Asked, jobs: Sequence[Again]) -> Iterator[tuple[int, Outcomes | None]]:
+    def run(asked: Runs, jobs: Sequence[Again]) -> Iterator[tuple[int, Outcomes | None]]:
         with ThreadPoolExecutor(count, thread_name_prefix="gmr-prune") as pool:
             waiting = iter(enumerate(jobs))
             running = {pool.submit(made_again, asked, job): number for number, job in _some(waiting, count)}
@@ -98,7 +98,7 @@ def here(threads: int = 0) -> Rerun:
 def elsewhere(workers: int | None = None, cluster: str | None = None) -> Rerun:
     """On other processes or on a cluster, with the same bits; see :func:`gmr.cluster.results`."""
 
-    def run(asked: Asked, jobs: Sequence[Again]) -> Iterator[tuple[int, Outcomes | None]]:
+    def run(asked: Runs, jobs: Sequence[Again]) -> Iterator[tuple[int, Outcomes | None]]:
         coming = results(made_again, jobs, workers=workers, cluster=cluster, shared=asked)
         with closing(coming) as found:  # type: ignore[type-var]
             yield from found

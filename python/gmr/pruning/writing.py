@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from gmr.errors import DatasetError, FormatWarning, GmrError
-from gmr.evaluation.elsewhere import Asked
+from gmr.evaluation.elsewhere import Runs
 from gmr.formats import read_folder, write
 from gmr.formats.folder import Takes
 from gmr.formats.registry import FORMATS, suffixes
@@ -148,7 +148,7 @@ def _written_and_checked(
     tell: Progress,
 ) -> Written:
     """Write, read and run again; where nothing may change and something does, cut less and begin again."""
-    asked, part = Asked.of(of.simulation), of.chosen.part
+    asked, part = Runs.of(of.simulation), of.chosen.part
     while True:
         pieces = pieces_of(asked.database, motions, part)
         _write(pieces, source, motions, beside, tell)
@@ -180,11 +180,11 @@ def _built(takes: Mapping[str, Motion], options: Mapping[str, Any], like: Databa
     return Database.build(dict(takes), normalization=scale, **options)
 
 
-def _run(asked: Asked, database: Database) -> list[TrialLog]:
+def _run(asked: Runs, database: Database) -> list[TrialLog]:
     return [run_trials(database, asked.profiles, tracking=tracking) for tracking in asked.trackings]
 
 
-def _score(asked: Asked, logs: list[TrialLog]) -> Score:
+def _score(asked: Runs, logs: list[TrialLog]) -> Score:
     return joined([outcomes_of(log, asked.trials) for log in logs]).score
 
 

@@ -15,10 +15,10 @@ from gmr.evaluation.figures.measures import MEASURES
 from gmr.evaluation.figures.trial_maps import set_label, set_suffix, trial_sets
 from gmr.evaluation.replay import worst_trial
 from gmr.evaluation.report.method import SOURCE, terms
+from gmr.evaluation.report.parts import failed_notice, folded, verdict_section
 from gmr.evaluation.report.replay import replay_sentence
 from gmr.evaluation.report.tables import Column, clip_columns, flow_columns, html_table, trial_columns
 from gmr.evaluation.result import Evaluation
-from gmr.evaluation.words import count
 from gmr.pages.document import element, items, own, section, text
 from gmr.table import Table
 
@@ -49,9 +49,12 @@ def comparison_sections(comparison: Comparison, drawn: ComparedFigures, tables: 
     others = [name for name in rows if name not in placed and not name.startswith("trial_map_")]
     parts = [
         element(
-            "div", _verdict(comparison) + _one(drawn.trials, film=-1 if replayed else None), class_="opening"
+            "div",
+            verdict_section(comparison.verdict.headline, comparison.verdict.sentences, _PLACES)
+            + _one(drawn.trials, film=-1 if replayed else None),
+            class_="opening",
         ),
-        _failed(comparison.failed),
+        failed_notice(comparison.failed),
         section(
             "datasets",
             "Each dataset by itself",
@@ -83,29 +86,6 @@ def comparison_sections(comparison: Comparison, drawn: ComparedFigures, tables: 
         section("method", "How it was measured", SOURCE, "".join(map(_method, comparison.evaluations))),
     ]
     return "\n".join(filter(None, parts))
-
-
-def _verdict(comparison: Comparison) -> str:
-    links = "".join(
-        element("li", element("a", text(name), href=f"#{place}")) for place, name in _PLACES.items()
-    )
-    return element(
-        "section",
-        element("h2", text(comparison.verdict.headline))
-        + element("ul", items(comparison.verdict.sentences))
-        + element("nav", element("ul", links), aria_label="Sections"),
-        id="verdict",
-    )
-
-
-def _failed(failed: Mapping[str, str]) -> str:
-    if not failed:
-        return ""
-    rows = "".join(
-        element("li", element("code", text(file)) + ": " + text(reason)) for file, reason in failed.items()
-    )
-    title = f"{count(len(failed), 'file')} could not be used"
-    return element("div", element("h2", text(title)) + element("ul", rows), class_="notice", id="failed")
 
 
 def _summaries(evaluations: Sequence[Evaluation]) -> str:
@@ -142,13 +122,7 @@ def _spoken(evaluation: Evaluation) -> str:
     return (
         element("h3", text(evaluation.dataset))
         + element("p", text(evaluation.verdict.headline))
-        + _folded("The verdict in full", full)
-    )
-
-
-def _folded(title: str, content: str, name: str | None = None) -> str:
-    return element(
-        "details", element("summary", text(title)) + element("div", content, class_="inside"), id=name
+        + folded("The verdict in full", full)
     )
 
 
@@ -257,7 +231,7 @@ def _tables(tables: Mapping[str, Table]) -> str:
         "Tables",
         "Metres, seconds, degrees. A header sorts; the CSV files hold every column and row.",
         "".join(
-            _folded(
+            folded(
                 f"{title} ({len(tables[name]):,})",
                 element(
                     "div",
@@ -273,4 +247,4 @@ def _tables(tables: Mapping[str, Table]) -> str:
 
 
 def _method(evaluation: Evaluation) -> str:
-    return _folded(evaluation.dataset, terms(evaluation.summary))
+    return folded(evaluation.dataset, terms(evaluation.summary))

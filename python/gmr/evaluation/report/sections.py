@@ -14,6 +14,7 @@ from gmr.evaluation.figures.transition_matrix import flows
 from gmr.evaluation.figures.trial_maps import set_label, trial_sets
 from gmr.evaluation.replay import worst_trial
 from gmr.evaluation.report.method import SOURCE, terms
+from gmr.evaluation.report.parts import failed_notice, folded, verdict_section
 from gmr.evaluation.report.replay import replay_sentence
 from gmr.evaluation.report.tables import Column, clip_columns, flow_columns, html_table, trial_columns
 from gmr.evaluation.result import Evaluation, Summary
@@ -45,7 +46,7 @@ def sections(evaluation: Evaluation, figures: Sequence[Figure], added: Sequence[
     paths = [figure for figure in figures if figure.name.startswith("planned_paths")]
     parts = [
         _verdict(evaluation, added),
-        _failed(evaluation.failed),
+        failed_notice(evaluation.failed),
         _notes(evaluation.notes),
         section(
             "coverage",
@@ -117,26 +118,7 @@ def _verdict(evaluation: Evaluation, added: Sequence[Section]) -> str:
     }
     # The verdict closes with the notes, which the page shows in a box of their own.
     said = [sentence for sentence in evaluation.verdict.sentences if sentence not in evaluation.notes]
-    links = "".join(
-        element("li", element("a", text(name), href=f"#{place}")) for place, name in places.items()
-    )
-    return element(
-        "section",
-        element("h2", text(evaluation.verdict.headline))
-        + element("ul", items(said))
-        + element("nav", element("ul", links), aria_label="Sections"),
-        id="verdict",
-    )
-
-
-def _failed(failed: Mapping[str, str]) -> str:
-    if not failed:
-        return ""
-    rows = "".join(
-        element("li", element("code", text(file)) + ": " + text(reason)) for file, reason in failed.items()
-    )
-    title = f"{count(len(failed), 'file')} could not be used"
-    return element("div", element("h2", text(title)) + element("ul", rows), class_="notice", id="failed")
+    return verdict_section(evaluation.verdict.headline, said, places)
 
 
 def _notes(notes: Sequence[str]) -> str:
@@ -235,13 +217,7 @@ def _never(evaluation: Evaluation) -> str:
     if not names:
         return ""
     title = f"{count(len(names), 'clip')} never played"
-    return _folded(title, element("ul", items(names), class_="names"), "never-played")
-
-
-def _folded(title: str, content: str, name: str) -> str:
-    return element(
-        "details", element("summary", text(title)) + element("div", content, class_="inside"), id=name
-    )
+    return folded(title, element("ul", items(names), class_="names"), "never-played")
 
 
 def _replay(evaluation: Evaluation) -> str:
@@ -261,7 +237,7 @@ def _tables(evaluation: Evaluation) -> str:
         "Tables",
         "Metres, seconds, degrees. A header sorts; the CSV files hold every column and row.",
         "".join(
-            _folded(title, _save_button(name) + content, f"table-{name}")
+            folded(title, _save_button(name) + content, f"table-{name}")
             for name, title, content in _each_table(evaluation)
         ),
     )
