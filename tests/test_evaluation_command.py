@@ -43,6 +43,19 @@ def test_the_verdict_goes_to_stdout_and_progress_to_stderr(folder: Path, capsys:
     assert all(len(line) <= 100 for line in said.out.splitlines())
 
 
+def test_the_demo_evaluates_with_mirrored_copies_and_says_what_comes_next(
+    folder: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("gmr.demo.demo_folder", lambda: folder)
+    report = tmp_path / "demo" / "report.html"
+    assert finished(command, ["demo", "--out", str(report)]) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("Evaluating the 2 clips ")
+    assert "This dataset does what it is asked in " in said
+    assert "Next: gmr evaluate FOLDER" in said
+    assert "Mirrored copies" in report.read_text()
+
+
 def test_quiet_says_nothing_of_progress(folder: Path, capsys: Captured) -> None:
     assert run(folder, *SMALL, "--quiet") == 0
     assert capsys.readouterr().err == ""

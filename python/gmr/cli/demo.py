@@ -15,8 +15,7 @@ import click
     show_default=True,
     help="Where the report goes.",
 )
-@click.pass_context
-def demo(context: click.Context, out: Path) -> None:
+def demo(out: Path) -> None:
     """Evaluate the clips that ship with gmr: real walks and runs, and their mirrored copies.
 
     Does what `gmr evaluate FOLDER --mirror` does on a folder of your own.
@@ -27,6 +26,6 @@ def demo(context: click.Context, out: Path) -> None:
     folder = demo_folder()
     click.echo(f"Evaluating the {len(list(folder.glob('*.bvh')))} clips of real people that ship with gmr,")
     click.echo("and their mirrored copies, as a motion-matching dataset.\n")
-    context.invoke(evaluate, folder=folder, out=out, mirror=True, names={})
+    evaluate.main([str(folder), "--mirror", "--out", str(out)], standalone_mode=False)
     click.echo(f"\n{CREDIT}")
     click.echo("\nNext: gmr evaluate FOLDER, with a folder of your own BVH files.")
