@@ -155,8 +155,8 @@ def test_a_saved_page_plays_alone(watched: Watched, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "look",
-    [Look("lbs"), Look("dqbs"), Look("cor"), Look(weights="Bone")],
-    ids=["lbs", "dqbs", "cor", "weights"],
+    [Look("lbs"), Look("dqbs"), Look(weights="Bone")],
+    ids=["lbs", "dqbs", "weights"],
 )
 def test_a_saved_skin_bends(watched: Watched, tmp_path: Path, look: Look) -> None:
     path = tmp_path / "figure.html"
