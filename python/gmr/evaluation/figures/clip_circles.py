@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.evaluation.figures.axes import WIDE, bare_axes
 from gmr.evaluation.figures.clip_usage import recordings
 from gmr.evaluation.figures.wording import base_name
 from gmr.evaluation.result import Evaluation
@@ -22,8 +23,6 @@ _MOST_CLIPS: Final = 12
 _DOTS: Final = 60
 """Dots a circle: a dot is a sixtieth of the clip, for the frames of a long one would run into each other."""
 _MOST_LINES: Final = 400
-_WIDE: Final = 1.4
-"""Width of the picture over its height."""
 _RING: Final = 0.78
 _RADIUS: Final = 0.155
 
@@ -61,7 +60,7 @@ def _lengths(usage: Table, number: Mapping[str, int]) -> NDArray[np.int64]:
 def _centres(circles: int) -> NDArray[np.float64]:
     """(circles, 2) centres of the circles on an ellipse, clockwise from the top."""
     angle = 2 * np.pi * np.arange(circles) / max(circles, 1)
-    return np.stack([_RING * _WIDE * np.sin(angle), _RING * np.cos(angle)], axis=1)
+    return np.stack([_RING * WIDE * np.sin(angle), _RING * np.cos(angle)], axis=1)
 
 
 def _places(dot: NDArray[np.int64], circles: int) -> NDArray[np.float64]:
@@ -151,13 +150,7 @@ def _sentence(names: list[str], transitions: Table, lines: Table, joined: NDArra
 
 
 def _chart() -> dict[str, Any]:
-    x = {
-        "field": "x",
-        "type": "quantitative",
-        "axis": None,
-        "scale": {"domain": [-_WIDE, _WIDE], "nice": False},
-    }
-    y = {"field": "y", "type": "quantitative", "axis": None, "scale": {"domain": [-1, 1], "nice": False}}
+    x, y = bare_axes()
     return {
         "width": "container",
         "height": "container",

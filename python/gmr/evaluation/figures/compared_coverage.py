@@ -7,10 +7,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from gmr.evaluation.figures.axes import point_axes
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.words import listing, percent
 from gmr.pages.figure import Figure
-from gmr.pages.theme import turn_ticks
 from gmr.table import Table
 
 __all__ = ["compared_coverage"]
@@ -83,19 +83,7 @@ def _chart(points: Table, names: Sequence[str], turn: float) -> dict[str, Any]:
         "data": {"name": "windows"},
         "mark": {"type": "point", "filled": True, "size": 11, "opacity": 0.5, "aria": False},
         "encoding": {
-            "x": {
-                "field": "turn_rate_deg",
-                "type": "quantitative",
-                "title": "Turn rate, deg/s (left is positive)",
-                "scale": {"domain": [-turn, turn], "nice": False, "padding": 4},
-                "axis": {"values": turn_ticks(turn)},
-            },
-            "y": {
-                "field": "speed",
-                "type": "quantitative",
-                "title": "Speed, m/s",
-                "scale": {"domain": [0.0, speed], "nice": True},
-            },
+            **point_axes(turn, speed),
             "color": {
                 "field": "dataset",
                 "type": "nominal",

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.evaluation.coverage import Bins, Density, density
+from gmr.evaluation.figures.axes import TURN_RATE, cell_axes
 from gmr.evaluation.figures.classes import Classes
 from gmr.evaluation.figures.wording import asked
 from gmr.evaluation.regions import Grid, Limits
@@ -120,9 +121,7 @@ def _balance(cells: Table) -> str:
 
 
 def _chart(limit: float) -> dict[str, Any]:
-    axis = {"grid": False, "values": turn_ticks(limit)}
-    turn = {"type": "quantitative", "title": "Turn rate, deg/s (left is positive)", "axis": axis}
-    speed = {"type": "quantitative", "title": "Speed, m/s", "axis": {"grid": False}}
+    place = cell_axes(TURN_RATE, {"values": turn_ticks(limit)})
     return {
         "width": "container",
         "height": 420,
@@ -131,10 +130,7 @@ def _chart(limit: float) -> dict[str, Any]:
                 "data": {"name": "cells"},
                 "mark": {"type": "rect", "aria": False, "stroke": "var(--page)", "strokeWidth": 0.5},
                 "encoding": {
-                    "x": {**turn, "field": "turn_from", "scale": {"nice": False, "padding": 6}},
-                    "x2": {"field": "turn_to"},
-                    "y": {**speed, "field": "speed_from", "scale": {"nice": False, "zero": True}},
-                    "y2": {"field": "speed_to"},
+                    **place,
                     "color": _SECONDS.colour("Seconds of motion in the cell"),
                     "tooltip": [
                         {"field": "speed", "title": "Speed, m/s", "format": ".2f"},
@@ -156,8 +152,8 @@ def _chart(limit: float) -> dict[str, Any]:
                     "aria": False,
                 },
                 "encoding": {
-                    "x": {**turn, "field": "turn_rate_deg"},
-                    "y": {**speed, "field": "speed"},
+                    "x": {**place["x"], "field": "turn_rate_deg"},
+                    "y": {**place["y"], "field": "speed"},
                     "tooltip": [
                         {"field": "speed", "title": "Asked for, m/s", "format": ".2f"},
                         {"field": "turn_rate_deg", "title": "Asked for, deg/s", "format": ".0f"},

@@ -7,11 +7,11 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.evaluation.figures.axes import point_axes
 from gmr.evaluation.figures.wording import base_name
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.words import count, percent
 from gmr.pages.figure import Figure
-from gmr.pages.theme import turn_ticks
 from gmr.table import Table
 
 __all__ = ["coverage_scatter"]
@@ -77,21 +77,7 @@ def _sentence(windows: Table, clip_count: int, step: int) -> str:
 def _chart(points: Table) -> dict[str, Any]:
     turn = float(np.abs(points["turn_rate_deg"]).max(initial=25.0))
     speed = float(points["speed"].max(initial=1.0))
-    place = {
-        "x": {
-            "field": "turn_rate_deg",
-            "type": "quantitative",
-            "title": "Turn rate, deg/s (left is positive)",
-            "scale": {"domain": [-turn, turn], "nice": False, "padding": 4},
-            "axis": {"values": turn_ticks(turn)},
-        },
-        "y": {
-            "field": "speed",
-            "type": "quantitative",
-            "title": "Speed, m/s",
-            "scale": {"domain": [0.0, speed], "nice": True},
-        },
-    }
+    place = point_axes(turn, speed)
     by_clip = {
         "color": {
             "condition": {"test": "dimmed", "value": "#8b939c"},

@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr.evaluation.figures.axes import WIDE, bare_axes
 from gmr.evaluation.figures.trial_maps import set_suffix, set_words
 from gmr.evaluation.intervals import mean_interval
 from gmr.evaluation.path_sentences import between
@@ -21,8 +22,6 @@ from gmr.table import Table
 __all__ = ["planned_paths"]
 
 _MOST: Final = 12
-_WIDE: Final = 1.4
-"""Width of the picture over its height."""
 _FILLED: Final = 0.86
 """Share of its cell that a path may fill across; above it stands its name."""
 
@@ -40,8 +39,8 @@ def planned_paths(evaluation: Evaluation, scenario: str, tracking: str) -> Figur
         name = trials["path"][trial]
         part = paths.take(paths["path"] == name)
         middle = ((place % columns + 0.5) / columns, (place // columns + 0.5) / rows)
-        centre = np.array([(2 * middle[0] - 1) * _WIDE, 1 - 2 * middle[1]])
-        lines += _lines(part, centre, (2 * _WIDE / columns, 2 / rows))
+        centre = np.array([(2 * middle[0] - 1) * WIDE, 1 - 2 * middle[1]])
+        lines += _lines(part, centre, (2 * WIDE / columns, 2 / rows))
         away = f"{number(float(trials['offset_mean'][trial]))} m off"
         names.append({"x": centre[0], "y": centre[1] + 0.93 / rows, "name": name, "away": away})
     return Figure(
@@ -67,7 +66,7 @@ def _drawn(offset: NDArray[np.float64]) -> list[int]:
 
 def _cells(pictures: int) -> tuple[int, int]:
     """Columns and rows, the cells about as wide as high."""
-    columns = min(pictures, max(1, math.ceil(math.sqrt(pictures * _WIDE) - 0.25)))
+    columns = min(pictures, max(1, math.ceil(math.sqrt(pictures * WIDE) - 0.25)))
     return columns, math.ceil(pictures / columns)
 
 
@@ -126,13 +125,7 @@ def _sentence(trials: Table, drawn: int, *, timed: bool) -> str:
 
 
 def _chart() -> dict[str, Any]:
-    x = {
-        "field": "x",
-        "type": "quantitative",
-        "axis": None,
-        "scale": {"domain": [-_WIDE, _WIDE], "nice": False},
-    }
-    y = {"field": "y", "type": "quantitative", "axis": None, "scale": {"domain": [-1, 1], "nice": False}}
+    x, y = bare_axes()
     name = {"type": "text", "baseline": "top", "aria": False}
     return {
         "width": "container",

@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from gmr.evaluation.coverage_cells import Bins
+from gmr.evaluation.figures.axes import TURN_RATE, cell_axes
 from gmr.evaluation.figures.classes import Classes
 from gmr.evaluation.figures.coverage_density import seconds_near_pairs, widest_turn
 from gmr.evaluation.pose_coverage import ALONE, BLENDABLE, REDUNDANT, THIN, UNBLENDABLE, BlendLimits
@@ -84,15 +85,7 @@ def _lonely(poses: Table) -> str:
 
 
 def _chart(limit: float) -> dict[str, Any]:
-    axis = {"grid": False, "values": turn_ticks(limit)}
-    turn = {"type": "quantitative", "title": "Turn rate, deg/s (left is positive)", "axis": axis}
-    speed = {"type": "quantitative", "title": "Speed, m/s", "axis": {"grid": False}}
-    place = {
-        "x": {**turn, "field": "turn_from", "scale": {"nice": False, "padding": 6}},
-        "x2": {"field": "turn_to"},
-        "y": {**speed, "field": "speed_from", "scale": {"nice": False, "zero": True}},
-        "y2": {"field": "speed_to"},
-    }
+    place = cell_axes(TURN_RATE, {"values": turn_ticks(limit)})
     tooltip = [
         {"field": "kind", "title": "The cell is"},
         {"field": "speed", "title": "Speed, m/s", "format": ".2f"},

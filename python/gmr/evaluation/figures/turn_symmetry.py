@@ -7,6 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from gmr.evaluation.coverage_symmetry import SYMMETRY_CELLS, symmetry_of
+from gmr.evaluation.figures.axes import cell_axes
 from gmr.evaluation.figures.classes import two_sided
 from gmr.evaluation.figures.coverage_density import seconds_near_pairs, widest_turn
 from gmr.evaluation.result import Evaluation
@@ -70,22 +71,14 @@ def _sentence(sides: Table) -> str:
     )
 
 
-_AXIS: Final = {"grid": False, "tickCount": 8}
-
-
 def _chart() -> dict[str, Any]:
-    turn = {"type": "quantitative", "title": "Turn rate to either side, deg/s", "axis": _AXIS}
-    speed = {"type": "quantitative", "title": "Speed, m/s", "axis": {"grid": False}}
     return {
         "width": "container",
         "height": 300,
         "data": {"name": "cells"},
         "mark": {"type": "rect", "aria": False, "stroke": "var(--page)", "strokeWidth": 0.5},
         "encoding": {
-            "x": {**turn, "field": "turn_from", "scale": {"nice": False, "padding": 6}},
-            "x2": {"field": "turn_to"},
-            "y": {**speed, "field": "speed_from", "scale": {"nice": False, "zero": True}},
-            "y2": {"field": "speed_to"},
+            **cell_axes("Turn rate to either side, deg/s", {"tickCount": 8}),
             "color": _MORE.colour("Per cent more to the left (to the right: minus)", columns=4),
             "tooltip": [
                 {"field": "speed", "title": "Speed, m/s", "format": ".2f"},

@@ -11,13 +11,20 @@ from gmr.evaluation.comparison import Comparison
 from gmr.evaluation.comparison_words import grids_of
 from gmr.evaluation.figures import Figure
 from gmr.evaluation.figures.comparison import ComparedFigures
-from gmr.evaluation.figures.measures import MEASURES
-from gmr.evaluation.figures.trial_maps import set_label, set_suffix, trial_sets
+from gmr.evaluation.figures.trial_maps import set_suffix, trial_sets
 from gmr.evaluation.replay import worst_trial
 from gmr.evaluation.report.method import SOURCE, terms
-from gmr.evaluation.report.parts import failed_notice, folded, verdict_section
+from gmr.evaluation.report.parts import (
+    VIEWS,
+    failed_notice,
+    folded,
+    map_choice,
+    map_controls,
+    tables_section,
+    verdict_section,
+)
 from gmr.evaluation.report.replay import replay_sentence
-from gmr.evaluation.report.tables import Column, clip_columns, flow_columns, html_table, trial_columns
+from gmr.evaluation.report.tables import Column, html_table
 from gmr.evaluation.result import Evaluation
 from gmr.pages.document import element, items, own, section, text
 from gmr.table import Table
@@ -82,7 +89,7 @@ def comparison_sections(comparison: Comparison, drawn: ComparedFigures, tables: 
             _rows(rows, _TRANSITIONS, names),
         ),
         _replay(comparison) if replayed else "",
-        _tables(tables),
+        tables_section(tables, Column("dataset", "Dataset")),
         section("method", "How it was measured", SOURCE, "".join(map(_method, comparison.evaluations))),
     ]
     return "\n".join(filter(None, parts))
@@ -173,41 +180,18 @@ def _row(
 def _maps(comparison: Comparison, rows: Rows, replayed: bool) -> str:
     """All maps of the trials, of which the controls show one measure of one set, for every dataset."""
     sets = trial_sets(comparison.evaluations[0])
-    views = {"holds": "Verdict", **{measure.column: measure.label for measure in MEASURES}}
-    buttons = "".join(
-        element(
-            "label",
-            f"<input{' checked' if place == 0 else ''} type='radio' name='measure' autocomplete='off' "
-            f"value='{name}'>" + element("span", text(label)),
-        )
-        for place, (name, label) in enumerate(views.items())
-    )
-    controls = element(
-        "fieldset", element("legend", "Colour by") + buttons, class_="controls choices"
-    ) + _set_choice(sets)
     content = "".join(
         _row(
             rows[f"trial_map_{name}{set_suffix(*each)}"],
             comparison.datasets,
             film=replayed,
-            choice=name + (f" {number}" if len(sets) > 1 else ""),
+            choice=map_choice(name, number, sets),
             hidden=number + place > 0,
         )
         for number, each in enumerate(sets)
-        for place, name in enumerate(views)
+        for place, name in enumerate(VIEWS)
     )
-    return element("div", controls + content, data_choose=True)
-
-
-def _set_choice(sets: Sequence[tuple[str, str]]) -> str:
-    if len(sets) < 2:
-        return ""
-    options = "".join(
-        element("option", text(set_label(*each)), value=str(number)) for number, each in enumerate(sets)
-    )
-    label = element("label", "Trials", for_="set-select")
-    select = element("select", options, id="set-select", autocomplete="off")
-    return element("div", label + select, class_="controls")
+    return element("div", map_controls(sets) + content, data_choose=True)
 
 
 def _replay(comparison: Comparison) -> str:
@@ -217,33 +201,6 @@ def _replay(comparison: Comparison) -> str:
     player = own(__package__, "player.html").replace("{{sentence}}", text(replay_sentence(worst)))
     lead = "A click on a cell of a map above replays its trial; so do these lists."
     return section("replay", "Any trial of any dataset, replayed", lead, player)
-
-
-def _tables(tables: Mapping[str, Table]) -> str:
-    dataset = Column("dataset", "Dataset")
-    shown = {
-        "trials": ("Trials", [dataset, *trial_columns(tables["trials"])]),
-        "clips": ("Clips", [dataset, *clip_columns()]),
-        "jumps": ("Jumps from clip to clip", [dataset, *flow_columns()]),
-    }
-    return section(
-        "tables",
-        "Tables",
-        "Metres, seconds, degrees. A header sorts; the CSV files hold every column and row.",
-        "".join(
-            folded(
-                f"{title} ({len(tables[name]):,})",
-                element(
-                    "div",
-                    element("button", f"Save {name}.csv", type="button", data_save=name),
-                    class_="controls",
-                )
-                + html_table(tables[name], columns, f"{title}, sortable"),
-                f"table-{name}",
-            )
-            for name, (title, columns) in shown.items()
-        ),
-    )
 
 
 def _method(evaluation: Evaluation) -> str:

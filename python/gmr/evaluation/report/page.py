@@ -24,19 +24,19 @@ def page(evaluation: Evaluation, added: Sequence[Section] = ()) -> str:
     """The report as HTML; ``added`` are sections of what was done with the evaluation."""
     drawn = list(figures(evaluation))
     clips, groups = clip_groups(evaluation)
+    tables = {
+        "trials": evaluation.measured.trials,
+        "clips": recordings(evaluation.measured.clips),
+        "jumps": flows(evaluation.measured.transitions),
+    }
     return Page(
         title=f"{evaluation.dataset}: locomotion dataset evaluation",
         eyebrow="Locomotion dataset evaluation",
         heading=evaluation.dataset,
         facts=facts(evaluation.summary),
-        sections=sections(evaluation, drawn, added),
+        sections=sections(evaluation, drawn, tables, added),
         figures=[*drawn, *(figure for section in added for figure in section.figures)],
-        tables={
-            **{name: table for section in added for name, table in section.tables.items()},
-            "trials": evaluation.measured.trials,
-            "clips": recordings(evaluation.measured.clips),
-            "jumps": flows(evaluation.measured.transitions),
-        },
+        tables={name: table for section in added for name, table in section.tables.items()} | tables,
         data={
             "clips": clips,
             "clipGroups": list(groups.values()),

@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Final
+from collections.abc import Mapping, Sequence
+from typing import Final
 
 import numpy as np
 
 from gmr.evaluation.figures import Figure
-from gmr.evaluation.figures.clip_usage import never_played, recordings
-from gmr.evaluation.figures.measures import MEASURES
-from gmr.evaluation.figures.transition_matrix import flows
-from gmr.evaluation.figures.trial_maps import set_label, trial_sets
+from gmr.evaluation.figures.clip_usage import never_played
+from gmr.evaluation.figures.trial_maps import trial_sets
 from gmr.evaluation.replay import worst_trial
 from gmr.evaluation.report.method import SOURCE, terms
-from gmr.evaluation.report.parts import failed_notice, folded, verdict_section
+from gmr.evaluation.report.parts import (
+    VIEWS,
+    failed_notice,
+    folded,
+    map_choice,
+    map_controls,
+    tables_section,
+    verdict_section,
+)
 from gmr.evaluation.report.replay import replay_sentence
-from gmr.evaluation.report.tables import Column, clip_columns, flow_columns, html_table, trial_columns
 from gmr.evaluation.result import Evaluation, Summary
 from gmr.evaluation.words import count, duration
 from gmr.pages.document import element, items, own, section, text
 from gmr.pages.section import Section
+from gmr.table import Table
 
 __all__ = ["clip_groups", "facts", "sections"]
 
@@ -39,7 +45,12 @@ def facts(summary: Summary) -> dict[str, str]:
     }
 
 
-def sections(evaluation: Evaluation, figures: Sequence[Figure], added: Sequence[Section] = ()) -> str:
+def sections(
+    evaluation: Evaluation,
+    figures: Sequence[Figure],
+    tables: Mapping[str, Table],
+    added: Sequence[Section] = (),
+) -> str:
     """The body of the page; what is ``added`` stands before the replay."""
     drawn = {figure.name: figure for figure in figures}
     maps = [figure for figure in figures if figure.name.startswith("trial_map_")]
@@ -86,7 +97,7 @@ def sections(evaluation: Evaluation, figures: Sequence[Figure], added: Sequence[
         ),
         *(each.html for each in added),
         _replay(evaluation),
-        _tables(evaluation),
+        tables_section(tables),
         section("method", "How it was measured", SOURCE, terms(evaluation.summary)),
     ]
     return "\n".join(filter(None, parts))
@@ -179,37 +190,14 @@ def _scatter(figure: Figure, evaluation: Evaluation) -> str:
 def _maps(maps: Sequence[Figure], evaluation: Evaluation) -> str:
     """All maps of the trials, of which the controls show one."""
     sets = trial_sets(evaluation)
-    views = {"holds": "Verdict", **{measure.column: measure.label for measure in MEASURES}}
-    buttons = "".join(
-        element(
-            "label",
-            f"<input{' checked' if place == 0 else ''} type='radio' name='measure' autocomplete='off' "
-            f"value='{name}'>" + element("span", text(label)),
-        )
-        for place, (name, label) in enumerate(views.items())
-    )
-    controls = element(
-        "fieldset", element("legend", "Colour by") + buttons, class_="controls choices"
-    ) + _set_choice(sets)
     shown = iter(maps)
     content = ""
     for number in range(len(sets)):
-        for place, name in enumerate(views):
-            choice = name + (f" {number}" if len(sets) > 1 else "")
+        for place, name in enumerate(VIEWS):
+            choice = map_choice(name, number, sets)
             film = None if evaluation.replays is None else 0
             content += _figure(next(shown), choice=choice, hidden=number + place > 0, film=film)
-    return element("div", controls + content, data_choose=True)
-
-
-def _set_choice(sets: Sequence[tuple[str, str]]) -> str:
-    if len(sets) < 2:
-        return ""
-    options = "".join(
-        element("option", text(set_label(*each)), value=str(number)) for number, each in enumerate(sets)
-    )
-    label = element("label", "Trials", for_="set-select")
-    select = element("select", options, id="set-select", autocomplete="off")
-    return element("div", label + select, class_="controls")
+    return element("div", map_controls(sets) + content, data_choose=True)
 
 
 def _never(evaluation: Evaluation) -> str:
@@ -229,31 +217,3 @@ def _replay(evaluation: Evaluation) -> str:
         "A click on a cell of the maps above replays its trial; so does the list here. First comes the worst."
     )
     return section("replay", "Any trial, replayed", lead, player)
-
-
-def _tables(evaluation: Evaluation) -> str:
-    return section(
-        "tables",
-        "Tables",
-        "Metres, seconds, degrees. A header sorts; the CSV files hold every column and row.",
-        "".join(
-            folded(title, _save_button(name) + content, f"table-{name}")
-            for name, title, content in _each_table(evaluation)
-        ),
-    )
-
-
-def _each_table(evaluation: Evaluation) -> Iterator[tuple[str, str, str]]:
-    measured = evaluation.measured
-    named: list[tuple[str, str, Any, list[Column]]] = [
-        ("trials", "Trials", measured.trials, trial_columns(measured.trials)),
-        ("clips", "Clips", recordings(measured.clips), clip_columns()),
-        ("jumps", "Jumps from clip to clip", flows(measured.transitions), flow_columns()),
-    ]
-    for name, title, table, columns in named:
-        yield name, f"{title} ({len(table):,})", html_table(table, columns, f"{title}, sortable")
-
-
-def _save_button(name: str) -> str:
-    button = element("button", f"Save {name}.csv", type="button", data_save=name)
-    return element("div", button, class_="controls")
