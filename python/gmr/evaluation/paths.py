@@ -25,10 +25,10 @@ def held_paths(trials: Table, limits: Limits) -> NDArray[np.bool_]:
     The speed error is that of the whole trial, as a share of the mean speed asked for: a trial of many
     speeds, or of standing, has none at each speed that would say something.
     """
-    held = np.abs(trials["speed_error_share"]) <= limits.speed
-    held &= np.abs(trials["turn_rate_error_deg"]) <= limits.turn_rate_deg
     timed = trials["tracking"].astype(str) == "time"
-    return np.asarray(held & (~timed | (trials["offset_mean"] <= limits.offset)))
+    return limits.held(
+        trials["speed_error_share"], trials["turn_rate_error_deg"], trials["offset_mean"], timed
+    )
 
 
 def paths_table(dataset: str, trials: Sequence[Trial], tracking: str, log: Log) -> Table:

@@ -46,6 +46,18 @@ class Limits:
     turn_rate_deg: float = 10.0
     covered: float = 1.0
 
+    def held(
+        self,
+        speed_error_share: NDArray[np.float64],
+        turn_rate_error_deg: NDArray[np.float64],
+        offset: NDArray[np.float64],
+        timed: NDArray[np.bool_] | bool,
+    ) -> NDArray[np.bool_]:
+        """Which trials hold; the offset of those that are not ``timed`` does not count."""
+        near = np.abs(speed_error_share) <= self.speed
+        near &= np.abs(turn_rate_error_deg) <= self.turn_rate_deg
+        return np.asarray(near & (np.logical_not(timed) | (offset <= self.offset)))
+
 
 @dataclass(frozen=True, slots=True)
 class Grid:
@@ -87,11 +99,8 @@ class Grid:
 
         offset, speed_error = laid_out("offset_mean"), laid_out("speed_error")
         share, turn_rate_error = laid_out("speed_error_share"), laid_out("turn_rate_error_deg")
-        held = np.abs(share) <= limits.speed
-        held &= np.abs(turn_rate_error) <= limits.turn_rate_deg
         timed = not np.any(trials["tracking"] == "velocity")
-        if timed:
-            held &= offset <= limits.offset
+        held = limits.held(share, turn_rate_error, offset, timed)
         seconds = _seconds_in_cells(coverage, speeds, turn_rates)
         return cls(
             speeds, turn_rates, offset, speed_error, share, turn_rate_error, held, seconds, limits, timed

@@ -94,11 +94,11 @@ def outcomes_of(log: TrialLog, trials: Sequence[Trial]) -> Outcomes:
     share = speed_error_share(trials, seen)
     turn = metrics.turn_rate(seen)
     turn_error = np.degrees(metrics.static_error(turn, seen.ref_turn_rate, seen.moving))
-    held = (np.abs(share) <= LIMITS.speed) & (np.abs(turn_error) <= LIMITS.turn_rate_deg)
+    timed = log.tracking == "time"
     offset = np.full(len(log), np.nan)
-    if log.tracking == "time":
+    if timed:
         offset = metrics.mean_where(metrics.offset(seen), seen.recorded)
-        held &= offset <= LIMITS.offset
+    held = LIMITS.held(share, turn_error, offset, timed)
     landed = (log.status == Status.JUMPED) | (log.status == Status.FORCED_AT_END)
     if landed.shape[1]:
         landed[:, 0] = True
