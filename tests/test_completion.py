@@ -29,6 +29,12 @@ def completed(clips: dict[str, gmr.Motion]) -> Completion:
     return complete(clips, synthesised(seconds=6), dataset="four", speeds=SPEEDS, turn_rates_deg=TURNS)
 
 
+def test_both_evaluations_are_called_by_the_dataset(completed: Completion) -> None:
+    assert completed.before.dataset == completed.dataset
+    assert completed.after.dataset == f"{completed.dataset}, completed"
+    assert set(completed.after.measured.trials["dataset"]) == {completed.after.dataset}
+
+
 def test_holes_are_the_trials_that_do_not_hold(completed: Completion) -> None:
     trials = completed.trials
     missing = {(row["speed"], row["turn_rate_deg"]) for row in trials.rows() if not row["held_before"]}

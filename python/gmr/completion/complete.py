@@ -19,12 +19,13 @@ from gmr.completion.candidates import SYNTHESISED
 from gmr.completion.choosing import Choice
 from gmr.completion.holes import Ask, grid_of, holes
 from gmr.errors import DatasetError
+from gmr.evaluation.compare import renamed
 from gmr.evaluation.evaluate import evaluate
 from gmr.evaluation.result import Evaluation
 from gmr.motion import Motion
 from gmr.table import Table
 
-__all__ = ["Completion", "Filler", "Progress", "complete", "with_straight"]
+__all__ = ["Completion", "Filler", "Progress", "complete", "completed_name", "with_straight"]
 
 Filler: TypeAlias = Callable[[Ask, Motion], Motion | None]
 """Makes a clip of a movement on the skeleton of another motion; None where it cannot."""
@@ -165,7 +166,7 @@ def complete(
         return lambda what, done, of: tell(f"{name}: {what}", done, of)
 
     settings = {"scenarios": "constant", **settings}
-    before = evaluate(motions, progress=phase("before"), **settings)
+    before = renamed(evaluate(motions, progress=phase("before"), **settings), dataset)
     like = next(motion for name, motion in motions.items() if name not in before.failed)
     added: dict[str, Motion] = {}
     asked: dict[str, Ask] = {}
@@ -180,12 +181,20 @@ def complete(
         name = _unused(f"made_{ask.name}", {*motions, *added}) + _SUFFIX
         added[name], asked[name] = made, ask
     tell("making clips", len(wanted), len(wanted))
-    after = evaluate({**motions, **added}, progress=phase("after"), **settings) if added else before
+    after = before
+    if added:
+        both = evaluate({**motions, **added}, progress=phase("after"), **settings)
+        after = renamed(both, completed_name(dataset))
     if left_out := sorted(set(after.failed) - set(before.failed)):
         raise DatasetError(
             f"{left_out[0]} cannot be evaluated beside the dataset's own clips: {after.failed[left_out[0]]}"
         )
     return Completion(dataset, before, after, added, asked, tuple(not_made))
+
+
+def completed_name(dataset: str) -> str:
+    """What a dataset is called with what was added."""
+    return f"{dataset}, completed"
 
 
 def with_straight(asks: Iterable[Ask]) -> tuple[Ask, ...]:

@@ -12,11 +12,12 @@ import numpy as np
 
 from gmr.completion.candidates import Candidate, on_skeleton, variants
 from gmr.completion.choosing import Choice, Contest, choose, joined, on_plan, shortlisted
-from gmr.completion.complete import Completion, Filler, Progress, with_straight
+from gmr.completion.complete import Completion, Filler, Progress, completed_name, with_straight
 from gmr.completion.holes import holes
 from gmr.completion.shortfall import shortfalls
 from gmr.completion.tempo import Rows, rows_of
 from gmr.errors import DatasetError
+from gmr.evaluation.compare import renamed
 from gmr.evaluation.evaluate import evaluate
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.simulation import Simulation
@@ -84,7 +85,7 @@ def complete_from(
     reading: dict[str, Any] = {"names": names, "unit": unit, "threads": threads}
     if before is None or before.simulation is None:
         settings = {"scenarios": "constant", **settings}
-        before = evaluate(motions, progress=phase("before"), **reading, **settings)
+        before = renamed(evaluate(motions, progress=phase("before"), **reading, **settings), dataset)
     else:
         settings = {name: before.summary.settings[name] for name in _AS_EVALUATED}
         grid = [name for name in settings["scenarios"] if name in _ON_THE_GRID]
@@ -92,9 +93,10 @@ def complete_from(
     assert before.simulation is not None
     hunt = _Hunt(before, motions, {"names": names, "unit": unit}, thread_count(threads), tell)
     choices, refused, added, held = hunt.found(others, fill, lay, at_most)
-    after = (
-        evaluate({**motions, **added}, progress=phase("after"), **reading, **settings) if added else before
-    )
+    after = before
+    if added:
+        both = evaluate({**motions, **added}, progress=phase("after"), **reading, **settings)
+        after = renamed(both, completed_name(dataset))
     if left_out := sorted(set(after.failed) & set(added)):
         raise DatasetError(
             f"{left_out[0]} cannot be evaluated beside the dataset's own clips: {after.failed[left_out[0]]}"

@@ -16,6 +16,9 @@ __all__ = ["seen_sentences"]
 SKATES: Final = 200.0
 """Millimetres a stance from which on a foot that is down plainly skates: most of a foot's length."""
 
+JERKS: Final = 1.2
+"""Times as hard as between jumps from which on the jerk at jumps is told; below it nobody would notice."""
+
 
 def seen_sentences(trials: Table) -> Iterator[str]:
     """How far feet slide while they are down, and how hard jumps jerk, in the trials that are judged."""
@@ -34,6 +37,6 @@ def seen_sentences(trials: Table) -> Iterator[str]:
         f"where the clips' own frames slide {number(float(np.median(own[known])))} mm{skates}."
     )
     jerk = trials["jerk_at_jumps"] / trials["jerk_between_jumps"]
-    if np.isfinite(jerk).any():
-        times = number(float(np.median(jerk[np.isfinite(jerk)])))
-        yield f"At a jump the joints jerk {times} times as hard as between jumps in the median trial."
+    times = float(np.median(jerk[np.isfinite(jerk)])) if np.isfinite(jerk).any() else 1.0
+    if times >= JERKS:
+        yield f"At a jump the joints jerk {number(times)} times as hard as between jumps in the median trial."
