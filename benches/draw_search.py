@@ -82,27 +82,43 @@ def measured(most: int) -> Iterator[dict[str, Any]]:
 def chart(values: list[dict[str, Any]]) -> dict[str, Any]:
     """Vega-Lite description of the curves."""
     log = {"type": "log"}
+    decades = [10.0**power for power in range(-1, 8)]
+    dashes = {"field": "queries", "type": "nominal", "sort": ["near the data", "hard"]}
     return {
         "$schema": "https://vega.github.io/schema/vega-lite/v5.json",
         "width": 520,
         "height": 300,
         "background": "white",
         "data": {"values": values},
-        "mark": {"type": "line", "point": {"filled": True}},
+        "layer": [
+            {"mark": "line", "encoding": {"strokeDash": dashes}},
+            {
+                "mark": {"type": "point", "filled": True, "opacity": 1},
+                "encoding": {"detail": {"field": "queries"}},
+            },
+        ],
         "encoding": {
-            "x": {"field": "rows", "type": "quantitative", "scale": log, "title": "rows"},
+            "x": {
+                "field": "rows",
+                "type": "quantitative",
+                "scale": log,
+                "title": "rows",
+                "axis": {"values": decades, "format": "~s"},
+            },
             "y": {
                 "field": "cost",
                 "type": "quantitative",
                 "scale": log,
                 "title": "microseconds a query, one thread",
+                "axis": {"values": decades, "format": ",~g"},
             },
-            "color": {"field": "search", "type": "nominal", "title": None},
-            "strokeDash": {
-                "field": "queries",
+            "color": {
+                "field": "search",
                 "type": "nominal",
-                "title": "queries",
-                "sort": ["near the data", "hard"],
+                "title": None,
+                "sort": ["gmr"],
+                "scale": {"range": ["#d55e00", "#0072b2", "#999999"]},
+                "legend": {"symbolType": "stroke"},
             },
         },
     }
