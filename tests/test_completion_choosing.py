@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import gmr
-from gmr.completion import Completion, complete_from, synthesised, write_completion
+from gmr.completion import Completion, complete_from, completion_section, synthesised, write_completion
 from gmr.completion.candidates import Candidate, on_skeleton, variants
 from gmr.completion.choosing import bound, on_plan
 from gmr.completion.queries import queries_of
@@ -260,7 +260,72 @@ def test_both_commands_choose_the_same(tmp_path: Path, capsys: pytest.CaptureFix
     assert finished(command, [*evaluate, "--no-report", "--scenario", "constant", *asked]) == 0
     said = capsys.readouterr().out
     assert said.count("chosen from archive") == 2
+    assert f"Chosen clips: {two / 'clips'}" in said
+    assert not list(two.glob("*.html"))
     assert (one / "chosen.csv").read_bytes() == (two / "chosen.csv").read_bytes()
     files = [sorted(path.name for path in (out / "clips").iterdir()) for out in (one, two)]
     assert files[0] == files[1]
     assert finished(command, ["complete", str(takes), "--made"]) == 2
+
+
+def test_the_report_has_before_and_after_and_the_object_their_numbers(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from gmr.cli.commands import gmr as command
+    from gmr.cli.common import finished
+
+    takes, archive, out, report = (tmp_path / name for name in ("takes", "archive", "out", "report.html"))
+    takes.mkdir()
+    archive.mkdir()
+    gmr.write(walker(5, 1.2), takes / "straight.bvh")
+    gmr.write(walker(6, 1.2, LEFT), archive / "left.bvh")
+    asked = ["--speeds", "1.2", "--turn-rates", "0,45", "--scenario", "constant", "-q"]
+    completing = ["--complete-from", str(archive), "--complete-out", str(out)]
+    assert finished(command, ["evaluate", str(takes), *completing, *asked, "-o", str(report), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    told = found["completed"]
+    page = report.read_text(encoding="utf-8")
+    assert told["headline"] in page
+    for part in ('id="completion"', 'href="#completion"', "Save completion_clips.csv"):
+        assert part in page
+    for figure in ("holds_before", "holds_after", "offset_before", "offset_after", "change"):
+        assert page.count(f'data-figure="{figure}"') == 1
+    before = {row["turn_rate_deg"]: row["offset_mean"] for row in found["trials"]}
+    assert {row["turn_rate_deg"]: row["offset_before"] for row in told["trials"]} == before
+    assert sum(row["held_after"] for row in told["trials"]) > sum(
+        row["held_before"] for row in told["trials"]
+    )
+    assert [row["clip"] for row in told["chosen"]] == sorted(path.name for path in (out / "clips").iterdir())
+    assert "takes, completed" in (out / "after.html").read_text(encoding="utf-8")
+
+
+def test_a_completion_that_adds_nothing_is_words_alone_in_the_report(straight: dict[str, gmr.Motion]) -> None:
+    found = complete_from(straight, {"more.bvh": walker(4, 1.2)}, speeds=(1.2,), turn_rates_deg=(0.0,))
+    section = completion_section(found)
+    assert "Nothing is missing" in section.html
+    assert section.figures == ()
+    assert "data-figure" not in section.html
+    assert "data-save" not in section.html
+
+
+def test_maps_before_and_after_are_on_one_scale(completed: Completion) -> None:
+    drawn = {figure.name: figure for figure in completion_section(completed).figures}
+    for measure in ("holds", "offset"):
+        before, after = drawn[f"{measure}_before"], drawn[f"{measure}_after"]
+        assert before.chart == after.chart
+        assert [before.data["trials"][name].tolist() for name in ("speed", "turn_rate_deg")] == [
+            after.data["trials"][name].tolist() for name in ("speed", "turn_rate_deg")
+        ]
+
+
+def test_a_place_for_the_clips_that_cannot_be_is_found_before_the_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from gmr.cli.commands import gmr as command
+    from gmr.cli.common import finished
+
+    (tmp_path / "file").write_text("")
+    place = tmp_path / "file" / "completed"
+    completing = ["--complete-from", str(tmp_path), "--complete-out", str(place)]
+    assert finished(command, ["evaluate", str(tmp_path), *completing, "-q", "--no-report"]) == 1
+    assert "Not a directory (while looking where to write)" in capsys.readouterr().err

@@ -13,19 +13,24 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 import click
 
 from gmr.cli.outcome import at_place
+from gmr.cli.plain_rows import plain_rows
 from gmr.cli.progress import Phases
 
 if TYPE_CHECKING:
     from gmr.completion import Completion
     from gmr.evaluation import Evaluation
     from gmr.formats.folder import Takes
+    from gmr.pages.section import Section
 
 __all__ = [
+    "Completed",
     "Completing",
     "check_choosing",
+    "check_completing",
     "choosing_options",
     "complete_folder",
     "completing_options",
+    "completion_summary",
     "completion_words",
     "read_clips",
 ]
@@ -94,14 +99,14 @@ _PLACES: Final = (
     click.option(
         "--complete-from",
         type=click.Path(exists=True, file_okay=False, path_type=Path),
-        help="Fill the holes from the clips of this folder, as gmr complete --from does.",
+        help="Fill the holes from the clips of this folder; the report shows before and after.",
     ),
     click.option(
         "--complete-out",
         type=click.Path(file_okay=False, path_type=Path),
         default=Path("completed"),
         show_default=True,
-        help="Folder for the chosen clips and the page that shows before and after.",
+        help="Folder for the chosen clips, their tables, and the report of the completed dataset.",
     ),
 )
 
@@ -130,21 +135,61 @@ def read_clips(folder: Path, threads: int | None, phases: Phases) -> Takes:
     return takes
 
 
+@dataclass(frozen=True, slots=True)
+class Completed:
+    """What was chosen, and where it was written."""
+
+    found: Completion
+    folder: Path
+
+    def words(self) -> str:
+        """For a terminal."""
+        clips = f"Chosen clips: {self.folder / 'clips'}" if self.found.added else f"Tables: {self.folder}"
+        return "\n".join(["", completion_words(self.found), "", clips])
+
+    def section(self) -> Section:
+        """For the report."""
+        from gmr.completion import completion_section
+
+        return completion_section(self.found)
+
+    def summary(self) -> dict[str, Any]:
+        """For a machine: plain values."""
+        return {**completion_summary(self.found), "folder": str(self.folder)}
+
+
+def check_completing(completing: Completing, phases: Phases) -> None:
+    """Learn before all the work that the folder cannot be written to."""
+    from gmr.replacing import check_place
+
+    phases.current = "looking where to write"
+    with at_place(completing.out):
+        check_place(completing.out / "manifest.json")
+
+
 def complete_folder(
-    evaluation: Evaluation, folder: Path, completing: Completing, phases: Phases, **reading: Any
-) -> tuple[Completion, Path]:
-    """Complete an evaluated folder from another one, and write the page, the tables and the clips.
+    evaluation: Evaluation,
+    folder: Path,
+    completing: Completing,
+    phases: Phases,
+    *,
+    report: bool,
+    threads: int | None,
+    **reading: Any,
+) -> Completed:
+    """Complete an evaluated folder from another one, and write the clips and the tables.
 
     Args:
         evaluation: of the folder.
         folder: the dataset.
         completing: what is asked for.
         phases: told of progress.
-        reading: ``names``, ``unit`` and ``threads`` of the evaluation.
+        report: also write the report of the completed dataset, ``after.html``.
+        threads: how many to use.
+        reading: ``names`` and ``unit`` of the evaluation.
     """
-    from gmr.completion import complete_from, synthesised, write_completion
+    from gmr.completion import complete_from, synthesised, write_added
 
-    threads = reading.get("threads")
     found = complete_from(
         dict(read_clips(folder, threads, phases)),
         dict(read_clips(completing.source, threads, phases)),
@@ -155,13 +200,17 @@ def complete_folder(
         lay=completing.retarget,
         before=evaluation,
         progress=phases.tell,
+        threads=threads,
         **reading,
     )
     with at_place(completing.out):
-        return found, write_completion(found, completing.out, source=completing.source, progress=phases.tell)
+        write_added(found, completing.out, source=completing.source, progress=phases.tell)
+        if report and found.added:
+            found.after.report(completing.out / "after.html")
+    return Completed(found, completing.out)
 
 
-def completion_words(found: Completion, written: Path) -> str:
+def completion_words(found: Completion) -> str:
     """For a terminal."""
     from gmr.completion.words import headline, sentences
 
@@ -169,4 +218,20 @@ def completion_words(found: Completion, written: Path) -> str:
     lines = [*textwrap.wrap(headline(found), width), ""]
     for sentence in sentences(found):
         lines += textwrap.wrap(sentence, width, initial_indent="- ", subsequent_indent="  ")
-    return "\n".join([*lines, "", f"Page: {written}"])
+    return "\n".join(lines)
+
+
+def completion_summary(found: Completion) -> dict[str, Any]:
+    """For a machine: plain values."""
+    from gmr.completion.words import headline, sentences
+
+    return {
+        "dataset": found.before.dataset,
+        "headline": headline(found),
+        "sentences": sentences(found),
+        "trials": plain_rows(found.trials),
+        "clips": plain_rows(found.clips),
+        "chosen": plain_rows(found.chosen),
+        "refused": dict(found.refused),
+        "not_made": [{"speed": a.speed, "turn_rate_deg": a.turn_rate_deg} for a in found.not_made],
+    }

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import click
 
-from gmr.cli.choosing import check_choosing, choosing_options, completion_words, read_clips
+from gmr.cli.choosing import (
+    check_choosing,
+    choosing_options,
+    completion_summary,
+    completion_words,
+    read_clips,
+)
 from gmr.cli.common import say
 from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.outcome import at_place, left_out, trouble_with_files
 from gmr.cli.progress import Phases
-
-if TYPE_CHECKING:
-    from gmr.completion import Completion
 
 __all__ = ["complete"]
 
@@ -135,29 +138,12 @@ def complete(
         with at_place(out):
             written = write_completion(found, out, source=source, progress=phases.tell)
     failed |= found.before.failed
-    click.echo(_summary(found, written) if as_json else completion_words(found, written))
+    if as_json:
+        click.echo(
+            json.dumps({**completion_summary(found), "page": str(written)}, indent=2, ensure_ascii=False)
+        )
+    else:
+        click.echo("\n".join([completion_words(found), "", f"Page: {written}"]))
     for sentence in left_out(failed):
         say(sentence)
     return 1 if failed else 0
-
-
-def _summary(found: Completion, written: Path) -> str:
-    from gmr.completion.words import headline, sentences
-
-    content: dict[str, Any] = {
-        "dataset": found.before.dataset,
-        "headline": headline(found),
-        "sentences": sentences(found),
-        "trials": list(found.trials.rows()),
-        "clips": [_finite(row) for row in found.clips.rows()],
-        "chosen": list(found.chosen.rows()),
-        "refused": dict(found.refused),
-        "not_made": [{"speed": a.speed, "turn_rate_deg": a.turn_rate_deg} for a in found.not_made],
-        "page": str(written),
-    }
-    return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
-
-
-def _finite(row: dict[str, Any]) -> dict[str, Any]:
-    """JSON has no NaN: what a chosen clip was not made for is null."""
-    return {name: None if value != value else value for name, value in row.items()}

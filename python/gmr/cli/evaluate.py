@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import click
 
-from gmr.cli.choosing import Completing, complete_folder, completing_options, completion_words
+from gmr.cli.choosing import (
+    Completed,
+    Completing,
+    check_completing,
+    complete_folder,
+    completing_options,
+)
 from gmr.cli.cluster_options import check_workers, cluster_options
 from gmr.cli.common import say
 from gmr.cli.evaluation_options import evaluation_options
@@ -41,7 +47,7 @@ Examples:
   gmr evaluate takes/ --prune 30% --prune-out smaller/     and the same in less
   gmr evaluate takes/ --prune lossless         without what no trial needs
   gmr evaluate takes/ --prune 30% --cluster tcp://10.0.0.1:8786
-  gmr evaluate takes/ --complete-from archive/ and what clips of another folder would add
+  gmr evaluate takes/ --complete-from archive/ and what clips of another folder would bring
   gmr evaluate takes/ --tune                   would other weights of the features do better?
   gmr evaluate takes/ --json > found.json      for a machine
 
@@ -144,6 +150,8 @@ def evaluate(
         _check_places(None if no_report else out, tables, figures, phases)
         if prune is not None:
             check_pruning(prune_out, phases)
+        if completing is not None:
+            check_completing(completing, phases)
         found = _evaluated(
             folders,
             preset=preset,
@@ -160,7 +168,7 @@ def evaluate(
             unit=unit,
             progress=phases.tell,
         )
-        added: dict[str, Pruned | Tuned] = {}
+        added: dict[str, Pruned | Tuned | Completed] = {}
         if prune is not None:
             assert isinstance(found, gmr.Evaluation)
             added["pruned"] = prune_folder(
@@ -178,19 +186,23 @@ def evaluate(
         if tune:
             assert isinstance(found, gmr.Evaluation)
             added["tuned"] = tune_evaluation(found, threads=threads, progress=phases.tell)
-        completed = None
         if completing is not None:
             assert isinstance(found, gmr.Evaluation)
-            completed = complete_folder(
-                found, folders[0], completing, phases, threads=threads, names=names, unit=unit
+            added["completed"] = complete_folder(
+                found,
+                folders[0],
+                completing,
+                phases,
+                report=not no_report,
+                threads=threads,
+                names=names,
+                unit=unit,
             )
         sections = [each.section() for each in added.values()]
         written = _write(found, None if no_report else out, tables, figures, phases, sections)
     click.echo(as_object(found, written, added) if as_json else in_words(found, written))
     for each in added.values() if not as_json else ():
         click.echo(each.words())
-    if completed is not None:
-        click.echo("\n" + completion_words(*completed), err=as_json)
     for sentence in left_out(found.failed):
         say(sentence)
     return 1 if found.failed else 0

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
-import math
 import shutil
 import textwrap
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gmr.cli.plain_rows import plain_rows
+
 if TYPE_CHECKING:
+    from gmr.cli.choosing import Completed
     from gmr.cli.pruning import Pruned
     from gmr.cli.tuning import Tuned
     from gmr.evaluation import Comparison, Evaluation, Verdict
@@ -38,7 +40,9 @@ def in_words(found: Evaluation | Comparison, written: Mapping[str, Any]) -> str:
 
 
 def as_object(
-    found: Evaluation | Comparison, written: Mapping[str, Any], added: Mapping[str, Pruned | Tuned]
+    found: Evaluation | Comparison,
+    written: Mapping[str, Any],
+    added: Mapping[str, Pruned | Tuned | Completed],
 ) -> str:
     """The figures as JSON: of one dataset as they are, of several as a list, with the verdict on all."""
     evaluations = _evaluations(found)
@@ -85,15 +89,7 @@ def _described(found: Evaluation) -> dict[str, Any]:
         "joints": dict(summary.joints),
         "unit": summary.unit,
         "settings": dict(summary.settings),
-        "trials": [_finite(row) for row in found.measured.trials.rows()],
+        "trials": plain_rows(found.measured.trials),
         "notes": found.notes,
         "failed": dict(found.failed),
-    }
-
-
-def _finite(row: Mapping[str, Any]) -> dict[str, Any]:
-    """JSON has no NaN: what is not known is null."""
-    return {
-        name: None if isinstance(value, float) and not math.isfinite(value) else value
-        for name, value in row.items()
     }

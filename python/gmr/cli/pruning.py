@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from gmr.cli.outcome import at_place
+from gmr.cli.plain_rows import plain_rows
 from gmr.cli.progress import Phases
 
 if TYPE_CHECKING:
@@ -58,8 +59,8 @@ class Pruned:
         return {
             "headline": headline(self.found),
             "sentences": sentences(self.found),
-            "curve": [_finite(row) for row in self.found.curve.table.rows()],
-            "importance": [_finite(row) for row in self.found.importance.rows()],
+            "curve": plain_rows(self.found.curve.table),
+            "importance": plain_rows(self.found.importance),
             "folder": str(self.written.folder),
             "seconds": self.written.part.seconds,
             "identical": self.written.identical,
@@ -128,8 +129,3 @@ def prune_folder(
     with at_place(out):
         written = write_pruned(found, folder, out, names=names, unit=unit, progress=phases.tell)
     return Pruned(found, written)
-
-
-def _finite(row: Mapping[str, Any]) -> dict[str, Any]:
-    """JSON has no NaN: what is not known is null."""
-    return {name: None if value != value else value for name, value in row.items()}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import shutil
 import textwrap
 from collections.abc import Callable
@@ -10,6 +9,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+
+from gmr.cli.plain_rows import plain_row, plain_rows
 
 if TYPE_CHECKING:
     from gmr.evaluation import Evaluation
@@ -53,11 +54,9 @@ class Tuned:
             "sentences": list(sentences(found)),
             "improves": found.improves,
             "weights": dict(found.weights),
-            "gain": {
-                name: value if math.isfinite(value) else None for name, value in found.gain._asdict().items()
-            },
-            "trials": list(found.trials.rows()),
-            "search": list(found.search.rows()),
+            "gain": plain_row(found.gain._asdict()),
+            "trials": plain_rows(found.trials),
+            "search": plain_rows(found.search),
         }
 
 

@@ -12,7 +12,8 @@ from gmr.completion.complete import Completion
 from gmr.completion.words import change_sentence
 from gmr.evaluation.figures.classes import two_sided
 from gmr.evaluation.figures.holds_map import holds_map
-from gmr.evaluation.figures.trial_maps import place_of_trial, trial_sets
+from gmr.evaluation.figures.measures import MEASURES
+from gmr.evaluation.figures.trial_maps import place_of_trial, trial_map, trial_sets
 from gmr.pages.figure import Figure
 from gmr.table import Table
 
@@ -22,12 +23,25 @@ _CHANGE: Final = two_sided((0.1, 0.25, 1.0))
 
 
 def figures(of: Completion) -> Iterator[Figure]:
-    """Every figure, in the order of the page."""
-    for when, evaluation in (("before", of.before), ("after", of.after)):
-        scenario, tracking = trial_sets(evaluation)[0]
-        drawn = holds_map(evaluation, scenario, tracking, columns=2)
-        yield replace(drawn, name=f"holds_{when}", title=f"{drawn.title}, {when}")
+    """Every figure, in the order of the page: pairs of before and after, then what changed.
+
+    The classes of a map do not depend on what is in it, so a colour means the same before and after.
+    """
+    both = {"before": of.before, "after": of.after}
+    scenario, tracking = trial_sets(of.before)[0]
+    for when, evaluation in both.items():
+        yield _called(f"holds_{when}", when, holds_map(evaluation, scenario, tracking, columns=2))
+    for when, evaluation in both.items():
+        drawn = trial_map(evaluation, _OFFSET, scenario, tracking, columns=4)
+        yield _called(f"offset_{when}", when, drawn)
     yield _change_map(of)
+
+
+_OFFSET: Final = next(measure for measure in MEASURES if measure.column == "offset_mean")
+
+
+def _called(name: str, when: str, figure: Figure) -> Figure:
+    return replace(figure, name=name, title=f"{figure.title}, {when}")
 
 
 def _change_map(of: Completion) -> Figure:
@@ -87,7 +101,7 @@ def _chart(rows: int) -> dict[str, Any]:
     }
     cells = {
         "mark": {"type": "rect", "stroke": "var(--page)", "strokeWidth": 2, "aria": False},
-        "encoding": {"color": _CHANGE.colour("Metres, minus is closer to the plan", columns=4)},
+        "encoding": {"color": _CHANGE.colour("Metres, minus is closer to the plan", columns=4, narrow=2)},
     }
     return {
         "width": "container",

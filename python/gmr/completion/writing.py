@@ -1,21 +1,20 @@
-"""A completion as a folder: its page, both reports, its tables, and the clips that were made."""
+"""A completion as a folder: the clips that were made or chosen, its tables, its page and both reports."""
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
-from gmr.completion.complete import Completion
+from gmr.completion.complete import Completion, Progress
 from gmr.completion.page import page
 from gmr.completion.words import headline, sentences
 from gmr.formats import write
 from gmr.motion import Motion
 from gmr.replacing import replacing
 
-__all__ = ["write_completion"]
+__all__ = ["write_added", "write_completion"]
 
 _STRIPS: Final = 3
 """Made clips of which the page shows a film strip: those that are played longest."""
@@ -28,9 +27,43 @@ def write_completion(
     folder: str | os.PathLike[str],
     *,
     source: str | os.PathLike[str] | None = None,
-    progress: Callable[[str, int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> Path:
     """Write all of it into a folder.
+
+    Args:
+        of: what to write.
+        folder: where to; made where it is missing. Files of these names in it are replaced, each at once.
+        source: the folder that clips were chosen from; see :func:`write_added`.
+        progress: called with what is being written, how much of it is done, and of how much.
+
+    Returns:
+        The page, ``index.html``; beside it the full reports ``before.html`` and ``after.html``, and what
+        :func:`write_added` writes.
+
+    Raises:
+        OSError: a file cannot be written.
+    """
+    tell = progress or _silent
+    folder = write_added(of, folder, source=source, progress=progress)
+    tell("writing the page", 0, 1)
+    of.before.report(folder / "before.html")
+    of.after.report(folder / "after.html")
+    written = folder / "index.html"
+    with replacing(written) as (file,):
+        file.write(page(of, _strips(of)).encode())
+    tell("writing the page", 1, 1)
+    return written
+
+
+def write_added(
+    of: Completion,
+    folder: str | os.PathLike[str],
+    *,
+    source: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+) -> Path:
+    """Write the clips that were made or chosen into a folder, and what they bring as tables.
 
     Args:
         of: what to write.
@@ -40,36 +73,32 @@ def write_completion(
         progress: called with what is being written, how much of it is done, and of how much.
 
     Returns:
-        The page, ``index.html``; beside it the full reports ``before.html`` and ``after.html``,
-        ``trials.csv`` and ``clips.csv``, and ``clips/``, the clips that were made or chosen. Where they were
-        chosen, ``chosen.csv`` and ``manifest.json`` too, which say what each is, where it comes from, what it
-        took away, and which clips were refused and why.
+        The folder. In it ``clips/``, ``trials.csv`` and ``clips.csv``. Where the clips were chosen,
+        ``chosen.csv`` and ``manifest.json`` too, which say what each is, where it comes from, what it took
+        away, and which clips were refused and why.
 
     Raises:
         OSError: a file cannot be written.
     """
-    tell = progress or (lambda what, done, total: None)
+    tell = progress or _silent
     folder = Path(folder)
     clips = folder / "clips"
     clips.mkdir(parents=True, exist_ok=True)
     for number, (name, motion) in enumerate(of.added.items()):
         tell("writing clips", number, len(of.added))
         _add(of, name, motion, clips, None if source is None else Path(source))
-    tell("writing clips", len(of.added), len(of.added))
-    tell("writing the page", 0, 1)
     of.trials.to_csv(folder / "trials.csv")
     of.clips.to_csv(folder / "clips.csv")
     if of.source:
         of.chosen.to_csv(folder / "chosen.csv")
         with replacing(folder / "manifest.json") as (file,):
             file.write(_manifest(of).encode())
-    of.before.report(folder / "before.html")
-    of.after.report(folder / "after.html")
-    written = folder / "index.html"
-    with replacing(written) as (file,):
-        file.write(page(of, _strips(of)).encode())
-    tell("writing the page", 1, 1)
-    return written
+    tell("writing clips", len(of.added), len(of.added))
+    return folder
+
+
+def _silent(phase: str, done: int, of: int) -> None:
+    """Tell nobody."""
 
 
 def _add(of: Completion, name: str, motion: Motion, clips: Path, source: Path | None) -> None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from gmr.evaluation.report.parts import shown_figure
 from gmr.evaluation.report.tables import Column, html_table
 from gmr.pages.document import element, items, section, text
-from gmr.pages.figure import Figure
 from gmr.pages.section import Section
 from gmr.pruning.figures import figures
 from gmr.pruning.prune import Pruning
@@ -32,7 +32,7 @@ def pruning_section(of: Pruning) -> Section:
         + element("div", element("div", save, class_="controls") + table, class_="inside"),
     )
     # The figures say what the other sentences would.
-    content = element("ul", items(sentences(of)[:1])) + "".join(map(_figure, drawn)) + folded
+    content = element("ul", items(sentences(of)[:1])) + "".join(map(shown_figure, drawn)) + folded
     return Section(
         name="pruning",
         title="What can go",
@@ -40,9 +40,3 @@ def pruning_section(of: Pruning) -> Section:
         figures=tuple(drawn),
         tables={"importance": of.importance, "curve": of.curve.table},
     )
-
-
-def _figure(figure: Figure) -> str:
-    caption = element("figcaption", element("h3", text(figure.title)) + element("p", text(figure.sentence)))
-    chart = element("div", "", class_="chart", data_figure=figure.name)
-    return element("figure", caption + chart, class_="figure", id=figure.name)

@@ -22,7 +22,10 @@ _MARKS: Final = ("✓", "path", "speed", "turn")
 
 
 def holds_map(evaluation: Evaluation, scenario: str, tracking: str, *, columns: int = 4) -> Figure:
-    """Every trial as held, or as failed by the limit that it exceeds most; the legend has ``columns``."""
+    """Every trial as held, or as failed by the limit that it exceeds most; the legend has ``columns``.
+
+    Two columns are for a map that is half as wide as the page.
+    """
     trials = trials_of(evaluation, scenario, tracking)
     grid = Grid.of(trials, evaluation.measured.coverage, Limits())
     row = np.searchsorted(grid.speeds, trials["speed"])
@@ -88,7 +91,7 @@ def _chart(rows: int, columns: int) -> dict[str, Any]:
     marks = {
         "mark": {
             "type": "text",
-            "fontSize": {"expr": "windowSize()[0] < 600 ? 8 : 12"},
+            "fontSize": {"expr": f"windowSize()[0] < 600 ? 8 : {12 if columns > 2 else 10}"},
             "aria": False,
         },
         "encoding": {"text": {"field": "mark", "type": "nominal"}, "color": colour("on-", None)},

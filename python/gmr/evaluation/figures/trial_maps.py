@@ -26,8 +26,11 @@ __all__ = [
 ]
 
 
-def trial_map(evaluation: Evaluation, measure: Measure, scenario: str, tracking: str) -> Figure:
-    """One measure of the trials of a scenario, over speed (up) and turn rate (across)."""
+def trial_map(
+    evaluation: Evaluation, measure: Measure, scenario: str, tracking: str, *, columns: int = 7
+) -> Figure:
+    """One measure of the trials of a scenario, over speed (up) and turn rate (across); the legend has at most
+    ``columns``."""
     chosen = trials_of(evaluation, scenario, tracking)
     value = chosen[measure.column] * measure.factor
     spread = measure.spread(chosen) if measure.spread else np.full(len(chosen), np.nan)
@@ -43,7 +46,7 @@ def trial_map(evaluation: Evaluation, measure: Measure, scenario: str, tracking:
         name=f"trial_map_{measure.column}{set_suffix(scenario, tracking)}",
         title=measure.title + set_words(scenario, tracking),
         sentence=measure.sentence(chosen),
-        chart=_chart(measure, len(np.unique(chosen["speed"]))),
+        chart=_chart(measure, len(np.unique(chosen["speed"])), columns),
         data={"trials": drawn},
     )
 
@@ -138,7 +141,7 @@ def cells_of_trials(rows: int, colour: dict[str, Any], *layers: dict[str, Any]) 
     }
 
 
-def _chart(measure: Measure, rows: int) -> dict[str, Any]:
+def _chart(measure: Measure, rows: int, columns: int) -> dict[str, Any]:
     sign = "+" if measure.classes.palette == "signed" else ""
     number = f"format(datum.value, '{sign}.{measure.decimals}f')"
     ink = {"color": measure.classes.ink()}
@@ -152,7 +155,7 @@ def _chart(measure: Measure, rows: int) -> dict[str, Any]:
         },
         "encoding": {"text": {"field": "number", "type": "nominal"}, **ink},
     }
-    colour = measure.classes.colour(measure.unit, columns=4 if sign else 7)
+    colour = measure.classes.colour(measure.unit, columns=min(columns, 4) if sign else columns)
     return cells_of_trials(rows, colour, figures, *([_spread_layer(measure, ink)] if measure.spread else []))
 
 

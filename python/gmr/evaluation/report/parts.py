@@ -10,6 +10,7 @@ from gmr.evaluation.figures.trial_maps import set_label
 from gmr.evaluation.report.tables import Column, clip_columns, flow_columns, html_table, trial_columns
 from gmr.evaluation.words import count
 from gmr.pages.document import element, items, section, text
+from gmr.pages.figure import Figure
 from gmr.table import Table
 
 __all__ = [
@@ -18,6 +19,7 @@ __all__ = [
     "folded",
     "map_choice",
     "map_controls",
+    "shown_figure",
     "tables_section",
     "verdict_section",
 ]
@@ -56,6 +58,13 @@ def folded(title: str, content: str, name: str | None = None) -> str:
     return element(
         "details", element("summary", text(title)) + element("div", content, class_="inside"), id=name
     )
+
+
+def shown_figure(figure: Figure) -> str:
+    """A figure below its title and its sentence."""
+    caption = element("figcaption", element("h3", text(figure.title)) + element("p", text(figure.sentence)))
+    chart = element("div", "", class_="chart", data_figure=figure.name)
+    return element("figure", caption + chart, class_="figure", id=figure.name)
 
 
 def map_controls(sets: Sequence[tuple[str, str]]) -> str:

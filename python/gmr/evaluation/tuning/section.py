@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from gmr.evaluation.figures.wording import asked
+from gmr.evaluation.report.parts import shown_figure
 from gmr.evaluation.tuning.weights import HELD_OUT, TRAINING, Tuning
 from gmr.evaluation.tuning.words import headline, sentences
 from gmr.evaluation.words import count
-from gmr.pages.document import element, items, section, text
+from gmr.pages.document import element, items, section
 from gmr.pages.figure import Figure
 from gmr.pages.section import Section
 from gmr.table import Table
@@ -21,15 +22,13 @@ __all__ = ["tuning_figure", "tuning_section"]
 def tuning_section(tuning: Tuning) -> Section:
     """What tuning found, in words, and every cell before and after."""
     figure = tuning_figure(tuning)
-    caption = element("figcaption", element("h3", text(figure.title)) + element("p", text(figure.sentence)))
-    chart = element("div", "", class_="chart", data_figure=figure.name)
     save = "".join(
         element("button", f"Save {name}.csv", type="button", data_save=name)
         for name in ("tuning", "tuning_search")
     )
     content = (
         element("ul", items(list(sentences(tuning))))
-        + element("figure", caption + chart, class_="figure", id=figure.name)
+        + shown_figure(figure)
         + element("div", save, class_="controls")
     )
     return Section(
