@@ -18,7 +18,7 @@ from gmr.actionlets.travel.footing import Footing, Standing, footing, with_footp
 from gmr.actionlets.travel.height import held_up, kept_bend, lowered, passing, room
 from gmr.actionlets.travel.leg import BENT, Placed, place_foot
 from gmr.actionlets.travel.legs import legs_of, pelvis_shift, pelvis_turn, sole_of
-from gmr.actionlets.travel.mass import legs_moment, trunk_moment
+from gmr.actionlets.travel.mass import mass_from_pelvis
 from gmr.actionlets.travel.path import led, level
 from gmr.actionlets.travel.plan import Planned, asked, kinds, stances
 from gmr.actionlets.travel.report import Report, measured
@@ -167,8 +167,7 @@ def _balance(body: Body, values: Floats, both: Sequence[Footing]) -> Floats:
     air = _air(both, len(values))
     ends = np.concatenate([air.off, air.down])
     if len(ends):
-        posed = values[ends]
-        found[ends] = (trunk_moment(body, posed) + legs_moment(body, posed))[:, ::2]
+        found[ends] = mass_from_pelvis(body, values[ends])[:, ::2]
     return found
 
 
@@ -233,8 +232,7 @@ def _settled(
     if not len(air):
         return stepped(values, pelvis, both, root, heading, fps), root
     frames = air.frames
-    trunk = trunk_moment(body, values[frames])
-    centre = _in_world(trunk + legs_moment(body, values[frames]), heading[frames])
+    centre = _in_world(mass_from_pelvis(body, values[frames]), heading[frames])
     flying = np.zeros(len(root), bool)
     flying[frames] = True
     for number in range(_ROUNDS):
@@ -246,7 +244,7 @@ def _settled(
             moved = taken_up(root, air, centre, fps)
         wanted = flying if number + 1 < _ROUNDS else None
         angles = stepped(values, pelvis, both, moved, heading, fps, wanted)
-        centre = _in_world(trunk + legs_moment(body, angles[frames]), heading[frames])
+        centre = _in_world(mass_from_pelvis(body, angles[frames]), heading[frames])
     return angles, falling(moved, air, centre, fps)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.actionlets.travel.heel_rise import risen
-from gmr.actionlets.travel.leg import Law, Leg, Placed, law
+from gmr.actionlets.travel.leg import Law, Leg, Placed, law, lengths
 from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.plan import Stance
 from gmr.actionlets.travel.slopes import spread
@@ -86,10 +86,10 @@ class Footing:
         if self.leg.rigid:
             point, _ = self.sole.contact(self.pitch)
             end = self.touched(self.pitch)
-            length = _length(nominal.ankle[on] + turned(nominal.foot[on], point) - hip)
+            length = lengths(nominal.ankle[on] + turned(nominal.foot[on], point) - hip)
             return Standing(self, end, nominal.foot[on], point, law(self.leg, point), length)
         end, foot = self.planted(heading[on], self.pitch)
-        return Standing(self, end, foot, np.zeros_like(end), self.leg.law, _length(nominal.ankle[on] - hip))
+        return Standing(self, end, foot, np.zeros_like(end), self.leg.law, lengths(nominal.ankle[on] - hip))
 
     def touched(self, pitch: Floats, rows: NDArray[np.intp] | slice = slice(None)) -> Floats:
         """(m, 3) where the sole touches the ground in the world, in some of the frames on the ground."""
@@ -224,7 +224,3 @@ def _load(stance: Stance, fps: float) -> Floats:
     up = np.arange(count) / ramp if stance.lands else np.ones(count)
     down = np.arange(count)[::-1] / ramp if stance.leaves else np.ones(count)
     return smooth_step(np.minimum(up, down)) + 1e-9
-
-
-def _length(vectors: Floats) -> Floats:
-    return np.asarray(np.sqrt((vectors * vectors).sum(axis=1)), np.float64)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.actionlets.travel.turns import about_x, angles_of, product, turned
+from gmr.actionlets.travel.turns import angles_of, bent, product, seen_from, times, turned
 
 __all__ = [
     "BENT",
@@ -24,6 +24,7 @@ __all__ = [
     "law",
     "leg_angles",
     "leg_reach",
+    "lengths",
     "place_foot",
     "placed",
     "rigid_leg_angles",
@@ -108,7 +109,7 @@ def law(leg: Leg, tip: Floats) -> Law:
     """The law of cosines of a leg that ends in (..., 3) a point of a foot that goes with the shank, given
     from the ankle at rest."""
     tx, ty, tz = leg.thigh.tolist()
-    sx, sy, sz = np.moveaxis(leg.shank + tip, -1, 0)
+    sx, sy, sz = (leg.shank + tip).T
     p, q = ty * sy + tz * sz, tz * sy - ty * sz
     squares = tx * tx + ty * ty + tz * tz + sx * sx + sy * sy + sz * sz
     return Law(squares + 2 * tx * sx, 2 * np.hypot(p, q), np.arctan2(q, p))
@@ -131,14 +132,14 @@ def place_foot(leg: Leg, angles: Floats) -> Placed:
 
 def placed(leg: Leg, angles: Floats) -> Placed:
     """Where (F, K) angles of ``leg.columns`` put the foot, in the frame of the pelvis."""
-    flexion, abduction, rotation = (angles[:, :3] * leg.hip_signs).T
+    flexion, abduction, rotation = angles[:, :3].T * leg.hip_signs[:, None]
     hip = product(flexion, abduction, rotation)
-    lower = hip @ about_x(leg.knee_sign * angles[:, 3])
+    lower = bent(hip, leg.knee_sign * angles[:, 3])
     ankle = leg.hip + turned(hip, leg.thigh) + turned(lower, leg.shank)
     if leg.ankle_columns is None:
         return Placed(ankle, lower)
-    x, z, y = (angles[:, 4:] * leg.ankle_signs).T
-    return Placed(ankle, lower @ product(x, z, y))
+    x, z, y = angles[:, 4:].T * leg.ankle_signs[:, None]
+    return Placed(ankle, times(lower, product(x, z, y)))
 
 
 def leg_reach(law: Law, bend: Floats | float) -> Floats:
@@ -160,13 +161,13 @@ def leg_angles(leg: Leg, ankle: Floats, rotation: Floats, foot: Floats | None) -
         foot.
     """
     way = ankle - leg.hip
-    hinge = leg.knee_sign * leg.law.straight + _bend(leg.law, np.sqrt((way * way).sum(axis=1)))
-    found, hip = _hip_angles(leg, way, hinge, rotation, np.zeros(3))
+    hinge = leg.knee_sign * leg.law.straight + _bend(leg.law, lengths(way))
+    found = _hip_angles(leg, way, hinge, rotation, np.zeros(3))
     if foot is None:
         return found
-    lower = product(*hip) @ about_x(leg.knee_sign * hinge)
-    ankles = np.stack(angles_of(lower.swapaxes(1, 2) @ foot), axis=1) * leg.ankle_signs
-    return np.concatenate([found, ankles], axis=1)
+    lower = bent(product(*(found[:, :3] * leg.hip_signs).T), leg.knee_sign * hinge)
+    ankles = np.array(angles_of(seen_from(lower, foot))) * leg.ankle_signs[:, None]
+    return np.concatenate([found.T, ankles]).T
 
 
 def toe_leg_angles(leg: Leg, touch: Floats, point: Floats, rotation: Floats, ankle: Floats) -> Floats:
@@ -188,8 +189,8 @@ def toe_leg_angles(leg: Leg, touch: Floats, point: Floats, rotation: Floats, ank
     tip = turned(product(x, z, y), point)
     end = law(leg, tip)
     way = touch - leg.hip
-    hinge = leg.knee_sign * end.straight + _bend(end, np.sqrt((way * way).sum(axis=1)))
-    return np.concatenate([_hip_angles(leg, way, hinge, rotation, tip)[0], ankle], axis=1)
+    hinge = leg.knee_sign * end.straight + _bend(end, lengths(way))
+    return np.concatenate([_hip_angles(leg, way, hinge, rotation, tip).T, ankle.T]).T
 
 
 def rigid_leg_angles(leg: Leg, touch: Floats, tip: Floats, planned: Floats) -> Floats:
@@ -209,8 +210,8 @@ def rigid_leg_angles(leg: Leg, touch: Floats, tip: Floats, planned: Floats) -> F
     end = law(leg, tip)
     straight = leg.knee_sign * end.straight
     side = np.clip((planned[:, 3] - straight) / _IN_LINE, -1, 1)
-    bend = _bend(end, np.sqrt((way * way).sum(axis=1))) * side * (1.5 - 0.5 * side * side)
-    return _hip_angles(leg, way, unlocked(straight + bend), planned[:, 2], tip)[0]
+    bend = _bend(end, lengths(way)) * side * (1.5 - 0.5 * side * side)
+    return _hip_angles(leg, way, unlocked(straight + bend), planned[:, 2], tip)
 
 
 def unlocked(knee: Floats) -> Floats:
@@ -219,27 +220,31 @@ def unlocked(knee: Floats) -> Floats:
     return np.asarray(np.where(x < 2 * _IN_AIR, _IN_AIR + x * x / (4 * _IN_AIR), knee), np.float64)
 
 
-def _hip_angles(
-    leg: Leg, way: Floats, hinge: Floats, rotation: Floats, tip: Floats
-) -> tuple[Floats, tuple[Floats, Floats, Floats]]:
-    """(n, 4) hip and knee whose leg's end lies in the direction of (n, 3) ways, and the signed hip angles."""
+def lengths(vectors: Floats) -> Floats:
+    """(n,) lengths of (n, 3) vectors."""
+    return np.asarray(np.sqrt(np.einsum("fi,fi->f", vectors, vectors)), np.float64)
+
+
+def _hip_angles(leg: Leg, way: Floats, hinge: Floats, rotation: Floats, tip: Floats) -> Floats:
+    """(n, 4) hip and knee whose leg's end lies in the direction of (n, 3) ways."""
     turn = leg.knee_sign * hinge
     c, s = np.cos(turn), np.sin(turn)
-    sx, sy, sz = np.moveaxis(leg.shank + tip, -1, 0)
+    sx, sy, sz = (leg.shank + tip).T
     x = leg.thigh[0] + sx
     y = leg.thigh[1] + sy * c - sz * s
     z = leg.thigh[2] + sy * s + sz * c
 
     # (x, y, z) is the end from the hip before the hip turns: Ry, then Rz, then Rx bring it to ``way``.
     ry = leg.hip_signs[2] * rotation
-    x, z = x * np.cos(ry) + z * np.sin(ry), z * np.cos(ry) - x * np.sin(ry)
+    c, s = np.cos(ry), np.sin(ry)
+    x, z = x * c + z * s, z * c - x * s
     upright = np.hypot(x, y)
-    rz = -np.arccos(np.clip(way[:, 0] / upright, -1, 1)) - np.arctan2(y, x)
-    y = x * np.sin(rz) + y * np.cos(rz)
-    rx = np.arctan2(way[:, 2], way[:, 1]) - np.arctan2(z, y)
-    rx = (rx + np.pi) % (2 * np.pi) - np.pi
-    angles = np.stack([leg.hip_signs[0] * rx, leg.hip_signs[1] * rz, rotation, hinge], axis=1)
-    return angles, (rx, rz, ry)
+    aside = np.minimum(np.maximum(way[:, 0] / upright, -1), 1)
+    rz = -np.arccos(aside) - np.arctan2(y, x)
+    y = -upright * np.sqrt(1 - aside * aside)
+    # The angle from (y, z) to the way.
+    rx = np.arctan2(y * way[:, 2] - z * way[:, 1], y * way[:, 1] + z * way[:, 2])
+    return np.array([leg.hip_signs[0] * rx, leg.hip_signs[1] * rz, rotation, hinge]).T
 
 
 def _bend(law: Law, distance: Floats) -> Floats:
@@ -247,4 +252,6 @@ def _bend(law: Law, distance: Floats) -> Floats:
     near, end = leg_reach(law, _IN_AIR), leg_reach(law, _STRAIGHTEST)
     over = np.maximum(distance - near, 0) / (end - near)
     soft = np.where(over > 0, end - (end - near) * np.exp(-over), distance)
-    return np.asarray(np.arccos(np.clip((soft * soft - law.fixed) / law.swing, -1, 1)), np.float64)
+    return np.asarray(
+        np.arccos(np.minimum(np.maximum((soft * soft - law.fixed) / law.swing, -1), 1)), np.float64
+    )

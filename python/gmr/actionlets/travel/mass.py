@@ -8,114 +8,73 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gmr import _core
 from gmr.actionlets.body import Body
 from gmr.actionlets.posing import turning
-from gmr.actionlets.travel.turns import about_x, product, turned
+from gmr.arrays import read_only
 
-__all__ = ["legs_moment", "trunk_moment"]
+__all__ = ["mass_from_pelvis"]
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.int32]
 
-_LEG = ("hip", "knee", "ankle")
+_NOTHING = read_only(np.empty((0, 3), np.int32))
 
 
-def trunk_moment(body: Body, angles: Floats) -> Floats:
-    """(F, 3) what all but the legs adds to the centre of mass from the pelvis, in the frame of the heading.
+def mass_from_pelvis(body: Body, angles: Floats) -> Floats:
+    """(F, 3) the centre of mass from the pelvis, in the frame of the heading: the segments' centres by their
+    masses.
 
     Args:
         body: D degrees of freedom; its segments have masses that sum to 1.
         angles: (F, D) radians.
     """
-    return _moment(_hanging(body)[0], angles)
-
-
-def legs_moment(body: Body, angles: Floats) -> Floats:
-    """(F, 3) what the legs add to it."""
-    return _moment(_hanging(body)[1], angles)
+    hung = _hung(body)
+    places = np.empty((len(angles), len(hung.masses), 3))
+    _core.forward_kinematics_euler(
+        hung.topology, np.degrees(angles) * hung.signs, hung.columns, hung.axes, _NOTHING[:, 0], _NOTHING,
+        False, hung.offsets, hung.centres, _NOTHING[:, 0], places,
+    )  # fmt: skip
+    found: Floats = np.einsum("k,fki->fi", hung.masses, places)
+    return found
 
 
 class _Hung(NamedTuple):
-    """A joint and the segment that it turns.
+    """A body whose segments' centres hang on its joints as further joints.
 
     Args:
-        above: the number of the joint above, among those that hang together; -1 for the pelvis.
-        offset: (3,) from the joint above.
-        columns: of the angles about each axis, -1: none.
-        signs: (3,) -1 where an angle turns against its axis.
-        axes: about which it turns, in order.
-        centre: (3,) of the segment, from the joint.
-        mass: share of the body's; 0 where it is counted elsewhere.
+        topology: J joints, K of them centres.
+        columns, axes, signs: of the angles, see :func:`gmr.actionlets.posing.turning`.
+        offsets: (J, 3) metres.
+        centres: (K,) which of the joints they are.
+        masses: (K,) shares of the body's.
     """
 
-    above: int
-    offset: Floats
-    columns: list[int]
-    signs: list[float]
-    axes: list[int]
-    centre: Floats
-    mass: float
+    topology: _core.Topology
+    columns: Indices
+    axes: NDArray[np.uint8]
+    signs: Floats
+    offsets: Floats
+    centres: Indices
+    masses: Floats
 
 
 @lru_cache(maxsize=32)
-def _hanging(body: Body) -> tuple[list[_Hung], list[_Hung]]:
-    """The trunk with head and arms, and the legs: what hangs on the pelvis, which is the first of both."""
-    skeleton = body.skeleton
-    names = [name for name, end in zip(skeleton.names, skeleton.ends.tolist(), strict=True) if not end]
-    columns, axes, signs = turning(body.dofs, tuple(names))
-    segments = {segment.joint: segment for segment in body.segments}
-
-    def hung(own: list[str], counted: bool) -> list[_Hung]:
-        found = []
-        for name in own:
-            slot, joint = names.index(name), skeleton.names.index(name)
-            parent = skeleton.parents[joint]
-            found.append(
-                _Hung(
-                    -1 if parent < 0 else own.index(skeleton.names[parent]),
-                    np.asarray(skeleton.offsets[joint], np.float64),
-                    columns[slot].tolist(),
-                    signs[columns[slot]].tolist(),
-                    axes[slot].tolist(),
-                    np.array(segments[name].centre),
-                    segments[name].mass if counted or name != "pelvis" else 0.0,
-                )
-            )
-        return found
-
-    legs = [name for name in names if name.endswith(_LEG)]
-    return hung([name for name in names if name not in legs], True), hung(["pelvis", *legs], False)
-
-
-def _moment(joints: list[_Hung], angles: Floats) -> Floats:
-    """(F, 3) sum of share of mass times place of the segments."""
-    places: list[Floats] = []
-    frames: list[Floats] = []
-    found = np.zeros((len(angles), 3))
-    for joint in joints:
-        turn = _turn(joint, angles)
-        if joint.above < 0:
-            places.append(np.zeros((len(angles), 3)))
-            frames.append(turn)
-        else:
-            above = frames[joint.above]
-            places.append(places[joint.above] + turned(above, joint.offset))
-            frames.append(above @ turn)
-        if joint.mass:
-            found += joint.mass * (places[-1] + turned(frames[-1], joint.centre))
-    return found
-
-
-def _turn(joint: _Hung, angles: Floats) -> Floats:
-    """(F, 3, 3) a joint's turns about its axes in their order."""
-    still = np.zeros(len(angles))
-    by = [
-        sign * angles[:, column] if column >= 0 else still
-        for column, sign in zip(joint.columns, joint.signs, strict=True)
-    ]
-    if joint.axes == [0, 2, 1]:
-        is_hinge = joint.columns[1] < 0 and joint.columns[2] < 0
-        return about_x(by[0]) if is_hinge else product(by[0], by[1], by[2])
-    found = np.broadcast_to(np.eye(3), (len(angles), 3, 3))
-    for axis, angle in zip(joint.axes, by, strict=True):
-        found = found @ product(*(angle if axis == which else still for which in (0, 2, 1)))
-    return found
+def _hung(body: Body) -> _Hung:
+    skeleton, segments = body.skeleton, body.segments
+    proper = [name for name, end in zip(skeleton.names, skeleton.ends.tolist(), strict=True) if not end]
+    joints = np.array([skeleton.names.index(segment.joint) for segment in segments], np.int32)
+    slots = np.array([proper.index(segment.joint) for segment in segments], np.int32)
+    offsets = np.concatenate([skeleton.offsets, [segment.centre for segment in segments]])
+    offsets[skeleton.roots] = 0
+    return _Hung(
+        _core.Topology(
+            np.concatenate([skeleton.parents, joints]),
+            np.concatenate([skeleton.slots, slots]),
+            skeleton.slot_count,
+        ),
+        *turning(body.dofs, tuple(proper)),
+        read_only(offsets),
+        np.arange(skeleton.joint_count, len(offsets), dtype=np.int32),
+        np.array([segment.mass for segment in segments]),
+    )

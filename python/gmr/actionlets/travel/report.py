@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gmr.actionlets.travel.flight import GRAVITY, flights
 from gmr.actionlets.travel.leg import place_foot
 from gmr.actionlets.travel.legs import legs_of, pelvis_shift, pelvis_turn, sole_of
-from gmr.actionlets.travel.mass import legs_moment, trunk_moment
+from gmr.actionlets.travel.mass import mass_from_pelvis
 from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.plan import SIDES, Planned, Stance, asked, stances
 from gmr.actionlets.travel.sole import pitch_of, yaw_of
@@ -235,7 +235,7 @@ def _flights(
     found = []
     for off, down in zip(air.off.tolist(), air.down.tolist(), strict=True):
         at = slice(off, down + 1)
-        centre = trunk_moment(body, angles[at]) + legs_moment(body, angles[at])
+        centre = mass_from_pelvis(body, angles[at])
         path = pelvis[at] + _in_world(centre, heading[at])
         time = times[at] - times[off]
         fall = path + np.outer(GRAVITY / 2 * time**2, [0.0, 1.0, 0.0])
