@@ -21,7 +21,7 @@ FLAGS = (
 
 
 def opened(browser: Browser, file: Path, size: ViewportSize) -> tuple[Page, list[str]]:
-    """A page of ours when it is drawn, and all that was complained of, or asked of a network, up to now."""
+    """A page of ours when all of it is drawn, and what was complained of, or asked of a network, by then."""
     page = browser.new_page(viewport=size)
     complaints: list[str] = []
     page.on("console", lambda message: complaints.append(message.text))
@@ -33,8 +33,15 @@ def opened(browser: Browser, file: Path, size: ViewportSize) -> tuple[Page, list
         ),
     )
     page.goto(file.as_uri())
-    page.wait_for_selector("html[data-drawn=yes]", timeout=60_000)
+    draw_all(page)
     return page, complaints
+
+
+def draw_all(page: Page) -> None:
+    """Have the charts drawn that are out of view, too."""
+    page.wait_for_selector("html[data-drawn=yes]", timeout=60_000)
+    page.evaluate("document.dispatchEvent(new Event('draw-all'))")
+    page.wait_for_selector("html[data-drawn=yes]", timeout=60_000)
 
 
 def chromium(*flags: str) -> Iterator[Browser]:

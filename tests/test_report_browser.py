@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Locator, Page, ViewportSize
 
-from browsers import chromium
+from browsers import chromium, draw_all
 from fake_evaluation import fake_evaluation, with_names
 from gmr.evaluation import Evaluation
 from gmr.evaluation.report import write_report
@@ -24,6 +24,10 @@ RING_IS_ON_CELL = """(number) => {
     const ring = map.querySelector(".cell-ring").getBoundingClientRect();
     const cell = map.querySelectorAll(".mark-rect path")[number].getBoundingClientRect();
     return Math.hypot(ring.x - cell.x, ring.y - cell.y) < 3 && Math.abs(ring.width - cell.width) < 3;
+}"""
+IN_VIEW = """(element) => {
+    const { top, bottom } = element.getBoundingClientRect();
+    return bottom > 0 && top < innerHeight;
 }"""
 NASTY = "<script>document.title='owned'</script><img src=x onerror=\"document.title='owned'\">.bvh"
 
@@ -61,7 +65,8 @@ class Opened:
         return self.page.locator(f".player [data-part='{name}']")
 
 
-def open_page(browser: Browser, path: Path, **settings: object) -> Opened:
+def open_page(browser: Browser, path: Path, *, whole: bool = True, **settings: object) -> Opened:
+    """The page in a browser; ``whole``: with all its charts, not only those in view."""
     page = browser.new_page(**settings)  # type: ignore[arg-type]  # playwright's keywords, by name
     opened = Opened(page)
     page.on("console", lambda message: opened.complaints.append(f"{message.type}: {message.text}"))
@@ -73,8 +78,10 @@ def open_page(browser: Browser, path: Path, **settings: object) -> Opened:
 
     page.on("request", lambda request: watch(request.url))
     page.goto(path.as_uri())
-    page.locator("html[data-drawn]").wait_for()
+    page.locator("html[data-drawn=yes]").wait_for()
     page.locator(".player[data-ready=yes]").wait_for()
+    if whole:
+        draw_all(page)
     return opened
 
 
@@ -368,7 +375,7 @@ def test_every_control_can_be_reached_by_keyboard(opened: Opened) -> None:
 
 @pytest.mark.parametrize("viewport", [DESKTOP, PHONE], ids=["desktop", "phone"])
 def test_light_and_dark_follow_the_reader(browser: Browser, report: Path, viewport: ViewportSize) -> None:
-    opened = open_page(browser, report, viewport=viewport, color_scheme="light")
+    opened = open_page(browser, report, whole=False, viewport=viewport, color_scheme="light")
     chart = opened.page.locator("#trial_map_holds .chart")
     for seen in (chart, opened.part("stage"), opened.page.locator("h1")):
         opened.page.emulate_media(color_scheme="light")
@@ -378,12 +385,33 @@ def test_light_and_dark_follow_the_reader(browser: Browser, report: Path, viewpo
     assert opened.complaints == []
 
 
-def test_it_prints_on_white_from_dark_mode(browser: Browser, report: Path) -> None:
-    opened = open_page(browser, report, viewport=DESKTOP, color_scheme="dark")
-    opened.page.emulate_media(media="print", color_scheme="dark")
-    assert opened.page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
-    assert len(opened.page.pdf()) > 100_000
-    opened.page.close()
+def undrawn(page: Page) -> list[str]:
+    """The charts that are on the page and not drawn."""
+    charts = "[...document.querySelectorAll('.chart')].filter(chart => chart.getClientRects().length)"
+    names: list[str] = page.evaluate(
+        f"{charts}.filter(chart => chart.dataset.drawn !== 'yes').map(chart => chart.dataset.figure)"
+    )
+    return names
+
+
+def test_charts_are_drawn_when_they_come_near_and_all_of_them_on_white_paper(
+    browser: Browser, report: Path
+) -> None:
+    opened = open_page(browser, report, whole=False, viewport=DESKTOP, color_scheme="dark")
+    page = opened.page
+    far = page.locator(".chart[data-figure=clip_circles]")
+    assert "clip_circles" in undrawn(page)
+    far.scroll_into_view_if_needed()
+    page.locator(".chart[data-figure=clip_circles][data-drawn=yes]").wait_for()
+    page.locator("html[data-drawn=yes]").wait_for()
+    seen = page.locator(".chart:visible:not([data-drawn])")
+    assert not any(page.evaluate(IN_VIEW, chart.element_handle()) for chart in seen.all())
+    assert undrawn(page)
+    assert len(page.pdf()) > 100_000
+    assert undrawn(page) == []
+    page.emulate_media(media="print", color_scheme="dark")
+    assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    page.close()
     assert opened.complaints == []
 
 

@@ -49,18 +49,14 @@ function trialMap(element) {
   }
 
   /* The cells move when the chart takes a new width, which it does after its box has. */
-  let watched = false;
-  async function watch() {
-    if (watched) return;
-    watched = true;
-    const view = await chart(name);
+  whenDrawn(name, (view) => {
     view.addSignalListener("width", () => view.runAfter(marks));
-  }
+    marks();
+  });
 
   async function marks() {
     if (drawing.dataset.drawn !== "yes" || element.clientWidth === 0) return;
     const map = await mapOf(name);
-    watch();
     put(ring, map, marked.film === filmNow() ? map.cellOf(marked.trial) : null);
     put(cursor, map, document.activeElement === element ? at : null);
   }

@@ -22,7 +22,7 @@ function coverageScatter(select) {
       chosen === null ? "" : `${rows.length.toLocaleString("en")} of ${clips.length.toLocaleString("en")} points`;
   });
 
-  chart(name).then((view) => {
+  whenDrawn(name, (view) => {
     const { speed, turn_rate_deg: turn, time } = columnsOf(table);
     const reach = 18;
 
