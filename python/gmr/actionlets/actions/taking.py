@@ -10,6 +10,7 @@ from gmr.actionlets.actions.performance import Performance
 from gmr.actionlets.body import Body
 from gmr.actionlets.posing import motion as posed
 from gmr.actionlets.travel import Carried, Report, carried
+from gmr.actionlets.upright import sampled
 from gmr.errors import ActionletError
 from gmr.motion import Motion
 
@@ -48,7 +49,7 @@ def taken(performance: Performance, body: Body | None = None, fps: float = 120.0
     """
     check_frames(performance.action, performance.seconds, fps)
     who = body or _man()
-    found = carried(who, performance.score.sample(fps, who.names), performance, fps)
+    found = carried(who, sampled(who, performance.score, fps), performance, fps)
     motion = posed(who, found.angles, found.root, found.heading, fps, name=performance.action)
     return Take(motion, performance, found)
 

@@ -6,22 +6,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gmr.actionlets.travel.by_feet import carried_by_feet
 from gmr.actionlets.travel.by_turns import carried_by_turns
-from gmr.actionlets.travel.flight import Flights, falling, flights, taken_up
+from gmr.actionlets.travel.flight import Flights, falling, flights, flying_soon, taken_up
 from gmr.actionlets.travel.footing import Footing, Standing, footing, with_footprints
-from gmr.actionlets.travel.height import held_up, kept_bend, lowered, passing, room
+from gmr.actionlets.travel.height import carried_stiffly, held_up, kept_bend, lowered, passing
 from gmr.actionlets.travel.leg import BENT, Placed, place_foot
 from gmr.actionlets.travel.legs import legs_of, pelvis_shift, pelvis_turn, sole_of
 from gmr.actionlets.travel.mass import mass_from_pelvis
 from gmr.actionlets.travel.path import led, level
 from gmr.actionlets.travel.plan import Planned, asked, kinds, stances
 from gmr.actionlets.travel.report import Report, measured
+from gmr.actionlets.travel.rocking import Rocking, rocking
 from gmr.actionlets.travel.stepping import stepped
 from gmr.actionlets.travel.turns import turned
 from gmr.editing.easing import smooth_above
@@ -34,11 +35,18 @@ __all__ = ["Carried", "carried"]
 
 Floats = NDArray[np.float64]
 
+_Stood: TypeAlias = Standing | Rocking
+
 _ROUNDS = 2
 """How often flights are made ballistic anew with the legs that follow from the round before."""
 
-_RISES = 0.16
-"""Seconds before and after a rigid foot would sink within which the body rises."""
+_LIFTS = 3
+"""How often a rigid foot of a body that flies is lifted over the ground, for its toes sink while its knee
+bends."""
+
+_RISES, _STEADIES = 0.10, 0.16
+"""Seconds before and after a rigid foot would sink within which the body rises, and those in which it rises
+over a leg that stands stiffly."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,8 +120,7 @@ def carried(
             (ground, heading), both = by_feet, standing
     if len(how) > 1 or how[0][1] == "path":
         both = [with_footprints(one, ground, heading) for one in both]
-    root = _upright([one.standing(heading) for one in both], ground, heading, fps)
-    stood = [one.with_heels(root, heading).standing(heading) for one in both]
+    root, stood = _stood(values, both, ground, heading, fps)
     root[:, 1] = lowered(root[:, 1], _highest(stood, root, heading, fps), fps)
     found, root = _settled(body, values, pelvis, stood, root, heading, fps)
     if both[0].leg.rigid:
@@ -178,17 +185,49 @@ def _air(both: Sequence[Footing], count: int) -> Flights:
     return flights(on_ground)
 
 
-def _upright(both: Sequence[Standing], ground: Floats, heading: Floats, fps: float) -> Floats:
+def _stood(
+    values: Floats, both: Sequence[Footing], ground: Floats, heading: Floats, fps: float
+) -> tuple[Floats, Sequence[_Stood]]:
+    """(F, 3) the pelvis over its path, and the legs that hold it up."""
+    if not both[0].leg.rigid:
+        root = _upright([one.standing(heading) for one in both], ground, heading, fps)
+        return root, [one.with_heels(root, heading).standing(heading) for one in both]
+    root = np.zeros((len(ground), 3))
+    root[:, ::2] = ground
+    near = flying_soon(_air(both, len(ground)), len(ground), fps)
+    stood = [rocking(one, values[:, one.leg.knee_column], near, root, heading) for one in both]
+    root = _upright(stood, ground, heading, fps)
+    lacks = np.maximum(_lowest(stood, root, heading) - root[:, 1], 0)
+    root[:, 1] += smooth_above(lacks, max(round(_STEADIES * fps), 2))
+    return root, stood
+
+
+def _lowest(both: Sequence[_Stood], root: Floats, heading: Floats) -> Floats:
+    """(F,) height below which legs on the ground do not let the pelvis; -inf where they give way."""
+    lowest = np.full(len(root), -np.inf)
+    for stood in both:
+        if isinstance(stood, Rocking):
+            on = stood.one.frames
+            lowest[on] = np.maximum(lowest[on], stood.lowest(_hip(stood.one, root, heading)))
+    return lowest
+
+
+def _upright(both: Sequence[_Stood], ground: Floats, heading: Floats, fps: float) -> Floats:
     """(F, 3) the pelvis over its path, at the height at which the legs would keep their nominal bend."""
     root = np.zeros((len(ground), 3))
     root[:, ::2] = ground
-    heights, loads = np.zeros((len(ground), 2)), np.zeros((len(ground), 2))
+    heights, loads, stiff = (np.zeros((len(ground), 2)) for _ in range(3))
     speed = passing(root, fps)
     for k, stood in enumerate(both):
         one = stood.one
         bend, hip = _bend(one, speed), _hip(one, root, heading)
-        heights[one.frames, k] = room(stood.law, hip, stood.end, bend, stood.length)
+        heights[one.frames, k] = stood.held(hip, bend)
         loads[one.frames, k] = one.loads(fps)
+    for k, stood in enumerate(both):
+        if isinstance(stood, Rocking):
+            stiff[stood.one.frames, k] = 1 - stood.yields
+    if stiff.any():
+        heights = carried_stiffly(heights, loads, stiff)
     root[:, 1] = held_up(heights, loads, fps)
     return root
 
@@ -207,22 +246,23 @@ def _bend(one: Footing, speed: Floats) -> Floats:
     return np.full(len(one.frames), BENT)
 
 
-def _highest(both: Sequence[Standing], root: Floats, heading: Floats, fps: float) -> Floats:
+def _highest(both: Sequence[_Stood], root: Floats, heading: Floats, fps: float) -> Floats:
     """(F,) height that the legs on the ground allow the pelvis; inf in flight."""
     highest = np.full(len(root), np.inf)
     speed = passing(root, fps)
     for stood in both:
         one = stood.one
-        allowed = room(stood.law, _hip(one, root, heading), stood.end, _bend(one, speed))
+        allowed = stood.highest(_hip(one, root, heading), _bend(one, speed))
         highest[one.frames] = np.minimum(highest[one.frames], allowed)
-    return highest
+    found: Floats = np.maximum(highest, _lowest(both, root, heading))
+    return found
 
 
 def _settled(
     body: Body,
     values: Floats,
     pelvis: Floats,
-    both: Sequence[Standing],
+    both: Sequence[_Stood],
     root: Floats,
     heading: Floats,
     fps: float,
@@ -235,6 +275,7 @@ def _settled(
     centre = _in_world(mass_from_pelvis(body, values[frames]), heading[frames])
     flying = np.zeros(len(root), bool)
     flying[frames] = True
+    lifts = _LIFTS if both[0].one.leg.rigid else 1
     for number in range(_ROUNDS):
         moved = taken_up(root, air, centre, fps)
         over = np.maximum(moved[:, 1] - _highest(both, moved, heading, fps), 0)
@@ -243,7 +284,7 @@ def _settled(
             root[:, 1] = lowered(root[:, 1], root[:, 1] - over, fps)
             moved = taken_up(root, air, centre, fps)
         wanted = flying if number + 1 < _ROUNDS else None
-        angles = stepped(values, pelvis, both, moved, heading, fps, wanted)
+        angles = stepped(values, pelvis, both, moved, heading, fps, wanted, lifts)
         centre = _in_world(mass_from_pelvis(body, angles[frames]), heading[frames])
     return angles, falling(moved, air, centre, fps)
 

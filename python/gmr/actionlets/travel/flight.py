@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.actionlets.travel.slopes import slopes, spread
+from gmr.editing.easing import smooth_step
 
-__all__ = ["GRAVITY", "Flights", "falling", "flights", "taken_up"]
+__all__ = ["GRAVITY", "Flights", "falling", "flights", "flying_soon", "taken_up"]
 
 Floats = NDArray[np.float64]
 Frames = NDArray[np.intp]
@@ -55,6 +56,19 @@ def flights(on_ground: NDArray[np.bool_]) -> Flights:
     down = down if on_ground[-1] else np.concatenate([down, [len(on_ground) - 1]])
     some = down > off
     return Flights(np.asarray(off[some], np.intp), np.asarray(down[some], np.intp))
+
+
+def flying_soon(air: Flights, frame_count: int, fps: float) -> Floats:
+    """(F,) 1 in flight and as long as a stance takes up its speed, falling to 0 within as long again."""
+    flying = np.zeros(frame_count, bool)
+    flying[air.frames] = True
+    near = np.flatnonzero(flying)
+    if not len(near):
+        return np.zeros(frame_count)
+    frames = np.arange(frame_count)
+    after = np.clip(np.searchsorted(near, frames), 0, len(near) - 1)
+    away = np.minimum(np.abs(near[after] - frames), np.abs(frames - near[np.maximum(after - 1, 0)]))
+    return smooth_step(2 - away / (_TAKEN_UP * fps))
 
 
 def falling(root: Floats, air: Flights, centre: Floats, fps: float) -> Floats:

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.actionlets.travel.heel_rise import risen
-from gmr.actionlets.travel.leg import Law, Leg, Placed, law, lengths
+from gmr.actionlets.travel.height import room
+from gmr.actionlets.travel.leg import Leg, Placed, lengths
 from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.plan import Stance
 from gmr.actionlets.travel.slopes import spread
@@ -83,13 +84,8 @@ class Footing:
         """Where the leg ends in its stances, under (F,) headings."""
         on = self.frames
         hip, nominal = self.hip[on], self.nominal
-        if self.leg.rigid:
-            point, _ = self.sole.contact(self.pitch)
-            end = self.touched(self.pitch)
-            length = lengths(nominal.ankle[on] + turned(nominal.foot[on], point) - hip)
-            return Standing(self, end, nominal.foot[on], point, law(self.leg, point), length)
         end, foot = self.planted(heading[on], self.pitch)
-        return Standing(self, end, foot, np.zeros_like(end), self.leg.law, lengths(nominal.ankle[on] - hip))
+        return Standing(self, end, foot, lengths(nominal.ankle[on] - hip))
 
     def touched(self, pitch: Floats, rows: NDArray[np.intp] | slice = slice(None)) -> Floats:
         """(m, 3) where the sole touches the ground in the world, in some of the frames on the ground."""
@@ -145,24 +141,32 @@ class Footing:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Standing:
-    """Where a leg ends in its stances: in its ankle; with a rigid ankle in the point of the sole that touches
-    the ground.
+    """Where the ankle of a leg is in its stances.
 
     Args:
         one: the leg, n frames on the ground.
-        end: (n, 3) in the world.
-        foot: (n, 3, 3) turn of the foot in the frame of the heading; of a rigid foot the nominal one.
-        tip: (n, 3) the end from the ankle, in the frame of the foot.
-        law: of the leg to that end.
+        end: (n, 3) the ankle in the world.
+        foot: (n, 3, 3) turn of the foot in the frame of the heading.
         length: (n,) nominal metres from the hip.
     """
 
     one: Footing
     end: Floats
     foot: Floats
-    tip: Floats
-    law: Law
     length: Floats
+
+    def held(self, hip: Floats, bend: Floats) -> Floats:
+        """(n,) height of the pelvis at which the leg keeps its nominal length.
+
+        Args:
+            hip: (n, 3) the hip: x and z in the world, its height from the pelvis.
+            bend: (n,) radians of the knee at least.
+        """
+        return room(self.one.leg.law, hip, self.end, bend, self.length)
+
+    def highest(self, hip: Floats, bend: Floats) -> Floats:
+        """(n,) height that the leg allows the pelvis."""
+        return room(self.one.leg.law, hip, self.end, bend)
 
 
 def footing(

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from gmr.actionlets.travel.leg import BENT, Law, leg_reach
 from gmr.editing.easing import smooth_above, smooth_step
 
-__all__ = ["held_up", "kept_bend", "lowered", "passing", "room"]
+__all__ = ["carried_stiffly", "held_up", "kept_bend", "lowered", "passing", "room"]
 
 Floats = NDArray[np.float64]
 
@@ -85,6 +85,19 @@ def held_up(heights: Floats, loads: Floats, fps: float) -> Floats:
     weights = np.hanning(2 * half + 3)[1:-1]
     padded = np.pad(found, half, mode="edge")
     return np.asarray(np.convolve(padded, weights / weights.sum(), mode="valid"), np.float64)
+
+
+def carried_stiffly(heights: Floats, loads: Floats, stiff: Floats) -> Floats:
+    """(F, L) heights of legs that hold the pelvis no lower than the stiff ones among them.
+
+    Args:
+        heights, loads: (F, L) as for :func:`held_up`.
+        stiff: (F, L) 0 to 1: how far each leg holds the pelvis up whatever the others do.
+    """
+    total = loads.sum(axis=1, keepdims=True)
+    mean = (heights * loads).sum(axis=1, keepdims=True) / np.where(total > 0, total, 1)
+    most = np.max(stiff * np.where(loads > 0, heights - mean, 0), axis=1, keepdims=True)
+    return np.broadcast_to(mean + np.maximum(most, 0), heights.shape)
 
 
 def lowered(height: Floats, highest: Floats, fps: float) -> Floats:

@@ -27,7 +27,6 @@ __all__ = [
     "lengths",
     "place_foot",
     "placed",
-    "rigid_leg_angles",
     "toe_leg_angles",
     "unlocked",
 ]
@@ -43,9 +42,6 @@ _IN_AIR = np.radians(1.5)
 
 _STRAIGHTEST = np.radians(0.35)
 """Bend of the knee that a leg comes near to, where it is asked to be longer than it is."""
-
-_IN_LINE = np.radians(10.0)
-"""Radians of a knee's bend from which a leg with a rigid ankle bends fully to one side."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,27 +187,6 @@ def toe_leg_angles(leg: Leg, touch: Floats, point: Floats, rotation: Floats, ank
     way = touch - leg.hip
     hinge = leg.knee_sign * end.straight + _bend(end, lengths(way))
     return np.concatenate([_hip_angles(leg, way, hinge, rotation, tip).T, ankle.T]).T
-
-
-def rigid_leg_angles(leg: Leg, touch: Floats, tip: Floats, planned: Floats) -> Floats:
-    """Angles that bring a point of a foot that goes with the shank to a place, near planned ones.
-
-    Hip, knee and the tip of the toes get in line while the knee is bent by some 20 degrees, and then the leg
-    cannot be shorter or longer by its knee alone; it bends to the side to which the planned knee does, and
-    less the nearer that is to the line.
-
-    Args:
-        leg: the leg.
-        touch: (n, 3) where the point is wanted, in the frame of the pelvis.
-        tip: (n, 3) the point from the ankle, in the frame of the foot.
-        planned: (n, 4) planned angles; the hip's rotation is kept.
-    """
-    way = touch - leg.hip
-    end = law(leg, tip)
-    straight = leg.knee_sign * end.straight
-    side = np.clip((planned[:, 3] - straight) / _IN_LINE, -1, 1)
-    bend = _bend(end, lengths(way)) * side * (1.5 - 0.5 * side * side)
-    return _hip_angles(leg, way, unlocked(straight + bend), planned[:, 2], tip)
 
 
 def unlocked(knee: Floats) -> Floats:

@@ -18,9 +18,6 @@ __all__ = ["legs_of", "pelvis_shift", "pelvis_turn", "sole_of"]
 
 Floats = NDArray[np.float64]
 
-_ROUNDING = np.radians(4.0)
-"""Radians of a rigid ankle's pitch to both sides of flat over which contact moves from heel to toe."""
-
 
 @lru_cache(maxsize=32)
 def legs_of(body: Body) -> tuple[Leg, Leg]:
@@ -30,8 +27,8 @@ def legs_of(body: Body) -> tuple[Leg, Leg]:
 
 
 def sole_of(leg: Leg) -> Sole:
-    """The sole of a leg's foot; rounded where the ankle is rigid."""
-    return Sole(leg.heel, leg.toe, _ROUNDING if leg.rigid else 0.0)
+    """The sole of a leg's foot."""
+    return Sole(leg.heel, leg.toe, 1.0) if leg.rigid else Sole(leg.heel, leg.toe)
 
 
 def pelvis_turn(body: Body, angles: Floats) -> Floats:

@@ -26,6 +26,10 @@ __all__ = ["FlightFound", "Report", "StanceFound", "measured"]
 Floats = NDArray[np.float64]
 
 
+_LIFTED = 1.0
+"""Millimetres above its place from which on it is said of a foot."""
+
+
 @dataclass(frozen=True, slots=True)
 class StanceFound:
     """A foot on the ground.
@@ -36,6 +40,8 @@ class StanceFound:
         end: seconds.
         slide_mm: way that the lower of heel and toes goes along the ground.
         pivot_deg: degrees that the foot turns about the vertical.
+        lifted_mm: height of the lower of heel and toes over the ground, at most: with rigid ankles a foot may
+            land late, straight above its place, and leave early.
     """
 
     side: str
@@ -43,6 +49,7 @@ class StanceFound:
     end: float
     slide_mm: float
     pivot_deg: float
+    lifted_mm: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +102,11 @@ class Report:
         return max((stance.slide_mm for stance in self.stances), default=0.0)
 
     @property
+    def lifted_mm(self) -> float:
+        """How far a foot is over the ground in a stance, at most."""
+        return max((stance.lifted_mm for stance in self.stances), default=0.0)
+
+    @property
     def off_mm(self) -> float:
         """The largest distance of the centre of mass from its parabolas."""
         return max((flight.off_mm for flight in self.flights), default=0.0)
@@ -109,6 +121,8 @@ class Report:
             f"at most; lowest point of the feet {self.lowest_mm:.2f} mm",
             f"{len(self.flights)} flights leave the parabola by {self.off_mm:.2f} mm at most",
         ]
+        if self.lifted_mm > _LIFTED:
+            lines.insert(2, f"in a stance a foot is {self.lifted_mm:.0f} mm above its place at most")
         for what, found in (("corrected by", self.corrections_deg), ("beyond its range by", self.beyond_deg)):
             worst = sorted(found.items(), key=lambda item: -item[1])[:6]
             lines += (
@@ -158,6 +172,7 @@ def measured(
                 times[stance.last],
                 1000 * _slide(heels[stance.leg][at], toes[stance.leg][at]),
                 float(np.degrees(np.ptp(yaw))),
+                1000 * float(np.minimum(heels[stance.leg][at][:, 1], toes[stance.leg][at][:, 1]).max()),
             )
         )
     span = max(count - 1, 1) / fps

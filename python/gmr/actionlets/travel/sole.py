@@ -1,13 +1,7 @@
 """The sole: how a foot that rolls from heel to toe without slipping carries the ankle along.
 
 The foot is rigid. While the toes point up it turns about its heel, while they point down about the tip of the
-toes, and when it is flat it rests. A rigid ankle passes the flat foot at full speed, so that a sole with
-corners would jolt the leg; its sole is rounded. Both are one formula: a convex sole is told by its support
-function ``h(pitch)``, the height of the ankle over the ground, and rolls forward by ``s = -h' - integral of
-h``.
-Source: the support function of a convex curve, e.g. Santalo, "Integral Geometry and Geometric Probability"
-(1976), section 1.2; for rolling feet Hansen, Childress and Knox, "Roll-over shapes of human locomotor
-systems" (2004).
+toes, and when it is flat it rests.
 """
 
 from __future__ import annotations
@@ -33,14 +27,14 @@ _RISES = 0.8
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Sole:
-    """Heel and toe of a foot and how much the sole between them is rounded."""
+    """Heel and toe of a foot and how far its heel rises."""
 
     heel: Floats
     """(3,) from the ankle at rest, metres."""
     toe: Floats
     """(3,) the same, as low as the heel."""
-    rounding: float
-    """Radians of pitch to both sides of flat over which contact moves from heel to toe; 0 for corners."""
+    rises: float = _RISES
+    """Share of its nominal pitch by which the heel rises about the tip of the toes."""
 
     def settled(self, pitch: Floats) -> Floats:
         """(F,) pitch of the foot on the ground from its nominal pitch.
@@ -50,10 +44,8 @@ class Sole:
         not bend, about their tip: it rises by a fifth less, so that the ankle is not much higher. A rigid
         ankle has no choice.
         """
-        if self.rounding:
-            return pitch
         free = smooth_step((np.abs(pitch) - _FLAT) / (_FREE - _FLAT))
-        found: Floats = pitch * np.where(pitch < 0, _RISES, 1.0) * free
+        found: Floats = pitch * np.where(pitch < 0, self.rises, 1.0) * free
         return found
 
     def contact(self, pitch: Floats) -> tuple[Floats, Floats]:
@@ -68,32 +60,7 @@ class Sole:
         """
         front = pitch < 0
         point = np.where(front[:, None], self.toe, self.heel)
-        if not self.rounding:
-            return point, point[:, ::2]
-        return self._rounded(pitch, point)
-
-    def _rounded(self, pitch: Floats, corner: Floats) -> tuple[Floats, Floats]:
-        high = -float(self.heel[1])
-        zh, zt = float(self.heel[2]), float(self.toe[2])
-        length, middle = zt - zh, (zh + zt) / 2
-        w = length * np.sin(self.rounding)
-        c, s = np.cos(pitch), np.sin(pitch)
-        inner = np.clip(pitch, -self.rounding, self.rounding)
-        ci, si = np.cos(inner), np.sin(inner)
-        round_ = np.abs(pitch) < self.rounding
-        z = corner[:, 2]
-        h = np.where(round_, high * c - middle * s + ((length * s) ** 2 + w * w) / (4 * w), high * c - z * s)
-        slope = np.where(
-            round_, -high * s - middle * c + length * length * s * c / (2 * w), -high * s - z * c
-        )
-        # The integral of h from 0 to the end of the rounded part, then on about the corner.
-        area = high * si + middle * (ci - 1) + (length**2 * (inner - si * ci) / 2 + w * w * inner) / (4 * w)
-        area = area + np.where(round_, 0.0, high * (s - si) + z * (c - ci))
-        forward = -slope
-        point = np.stack(
-            [(self.heel[0] + self.toe[0]) / 2 + 0 * c, -forward * s - h * c, forward * c - h * s]
-        )
-        return point.T, np.stack([point[0], forward - area], axis=1)
+        return point, point[:, ::2]
 
 
 def pitch_of(foot: Floats) -> Floats:

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from gmr.actionlets.travel.footing import Standing
 from gmr.actionlets.travel.keeping import kept_in_range
-from gmr.actionlets.travel.leg import Leg, leg_angles, placed, rigid_leg_angles, unlocked
+from gmr.actionlets.travel.leg import Leg, leg_angles, placed, unlocked
 from gmr.actionlets.travel.limits import squashed, unsquashed
 from gmr.actionlets.travel.path import level
+from gmr.actionlets.travel.rocking import Rocking
 from gmr.actionlets.travel.sole import yaw_of
 from gmr.actionlets.travel.swinging import cleared, led_over
 from gmr.actionlets.travel.turns import turned, turned_back
@@ -30,11 +31,12 @@ _LEG_TURNS = 0.8
 def stepped(
     planned: Floats,
     pelvis: Floats,
-    both: Sequence[Standing],
+    both: Sequence[Standing | Rocking],
     root: Floats,
     heading: Floats,
     fps: float,
     wanted: NDArray[np.bool_] | None = None,
+    lifts: int = 1,
 ) -> Floats:
     """(F, D) the planned angles with legs that keep their feet where they belong and their ranges of motion.
 
@@ -50,6 +52,7 @@ def stepped(
         heading: (F,) radians.
         fps: frames a second.
         wanted: (F,) the frames that are wanted; None: all. In others the legs are anyhow.
+        lifts: how often feet in the air are lifted over the ground.
     """
     found = planned.copy()
     for stood in both:
@@ -60,8 +63,10 @@ def stepped(
         rows = np.arange(len(one.frames)) if wanted is None else one.edges()
         on = one.frames[rows]
         if len(on):
-            legs = _on_ground(stood, rows, plan[on], pelvis[on], root[on], heading[on])
-            if not one.leg.rigid:
+            if isinstance(stood, Rocking):
+                legs = stood.angles(rows, pelvis[on], root[on], heading[on])
+            else:
+                legs = _on_ground(stood, rows, plan[on], pelvis[on], root[on], heading[on])
                 legs = kept_in_range(one, rows, legs, pelvis[on], root[on], heading[on])
             found[on[:, None], columns] = legs
             offsets[on] = unsquashed(legs, *limits) - plan[on]
@@ -70,7 +75,9 @@ def stepped(
             some = np.ones(len(one.air.frames), bool) if wanted is None else wanted[one.air.frames]
             air = one.air.frames[some]
             free = plan[air] + offsets[air]
-            found[air[:, None], columns] = _swung(one.leg, free, one.air.rise[some], pelvis[air], root[air])
+            for _ in range(lifts):
+                legs = _swung(one.leg, free, one.air.rise[some], pelvis[air], root[air])
+            found[air[:, None], columns] = legs
     return found
 
 
@@ -79,7 +86,8 @@ def _swung(leg: Leg, free: Floats, rise: Floats, pelvis: Floats, root: Floats) -
 
     Args:
         leg: the leg.
-        free: (m, K) the angles before their ranges and the ground are looked at.
+        free: (m, K) the angles before their ranges and the ground are looked at; what keeps the foot over
+            the ground is added to them.
         rise: (m,) see :class:`Air`.
         pelvis, root: (m, 3, 3) and (m, 3) as for :func:`stepped`.
     """
@@ -95,7 +103,8 @@ def _swung(leg: Leg, free: Floats, rise: Floats, pelvis: Floats, root: Floats) -
         way = foot.ankle[low] + lift[low, None] * up[low]
         foot_kept = None if leg.rigid else foot.foot[low]
         more = leg_angles(leg, way, angles[low, _HIP_ROTATION], foot_kept) - angles[low]
-        angles[low] = squashed(free[low] + more, *leg.limits)
+        free[low] += more
+        angles[low] = squashed(free[low], *leg.limits)
     return angles
 
 
@@ -108,10 +117,6 @@ def _on_ground(
     way = stood.end[rows] - root
     way[:, ::2] = level(way[:, ::2], -heading)
     way = turned_back(pelvis, way)
-    if leg.rigid:
-        yaw = one.yaw[rows] - heading - yaw_of(foot)
-        planned = planned + np.outer(leg.hip_signs[2] * yaw, [0, 0, 1, 0])
-        return rigid_leg_angles(leg, way, stood.tip[rows], planned)
     yaw = yaw_of(foot) - yaw_of(one.nominal.foot[one.frames[rows]])
     rotation = planned[:, _HIP_ROTATION] + leg.hip_signs[2] * _LEG_TURNS * yaw
     low, high = leg.limits
