@@ -125,8 +125,8 @@ class Rocking:
         """(m,) pitch of feet under hips at (m,) places along their lines and over them."""
         leg, pitch, yields = self.one.leg, self.pitch[rows], self.yields[rows]
         heel, toe = (_pitch(leg, point, ahead, up) for point in (leg.heel, leg.toe))
-        # A straight leg reaches for the ground where its hip is higher than the planned pitch has it: in front of
-        # the body as far as it is long, behind it as far as hip, knee and toes are in line.
+        # A straight leg reaches for the ground where its hip is higher than the planned pitch has it: in
+        # front of the body as far as it is long, behind it as far as hip, knee and toes are in line.
         lands = smooth_step(-ahead / _LANDS) * smooth_step(1 + pitch / _SOFT)
         straight = lands * np.maximum(heel - pitch, 0)
         behind = _pitch(leg, leg.toe, ahead, up, -1.0)
