@@ -190,9 +190,10 @@ class Score:
             return sampled
         columns = {name: column for column, name in enumerate(self.dofs)}
         names = tuple(dofs)
-        there = [column for column, name in enumerate(names) if name in columns]
         found = np.zeros((len(seconds), len(names)))
-        found[:, there] = sampled[:, [columns[names[column]] for column in there]]
+        for column, name in enumerate(names):
+            if name in columns:
+                found[:, column] = sampled[:, columns[name]]
         return found
 
 
