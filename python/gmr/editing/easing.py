@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 def smooth_step(x: Floats) -> Floats:
     """``6 x^5 - 15 x^4 + 10 x^3`` on [0, 1], 0 before, 1 after: begins and ends without speed and without
     acceleration."""
-    t = np.clip(x, 0, 1)
+    t = np.minimum(np.maximum(x, 0), 1)
     found: Floats = t * t * t * (t * (6 * t - 15) + 10)
     return found
 

@@ -53,7 +53,9 @@ class Unrolled:
         rows = np.stack([times, angles * written.factor[which], skews], axis=1)
         bounds = self._moments.bounds[written.first]
         dof = np.repeat(np.arange(len(written.dofs)), np.diff(bounds))
-        return dict(zip(written.dofs, np.split(rows[np.lexsort((times, dof))], bounds[1:-1]), strict=True))
+        rows = rows[np.lexsort((times, dof))]
+        spans = zip(written.dofs, bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)
+        return {name: rows[first:end] for name, first, end in spans}
 
     def contacts(self) -> dict[str, Floats]:
         """By side (n, 2) the seconds between which the foot is on the ground."""
@@ -105,13 +107,21 @@ def united(spans: Sequence[tuple[float, float]]) -> Floats:
 
 def scored(knots_of: Mapping[str, Floats], seconds: float) -> Score:
     """The score through the extremes of all degrees of freedom, from 0 to ``seconds``."""
-    return Score.through({dof: _apart(rows) for dof, rows in knots_of.items()}, seconds)
+    if knots_of and not _are_apart([*knots_of.values()]):
+        knots_of = {dof: _apart(rows) for dof, rows in knots_of.items()}
+    return Score.through(knots_of, seconds)
+
+
+def _are_apart(knots: Sequence[Floats]) -> bool:
+    """Whether there are two extremes at least in each of these, and none comes too soon after another."""
+    counts = np.array([len(rows) for rows in knots], np.intp)
+    steps = np.diff(np.concatenate([rows[:, 0] for rows in knots]))
+    steps[np.cumsum(counts)[:-1] - 1] = np.inf
+    return bool((counts > 1).all() and (steps >= _SHORTEST).all())
 
 
 def _apart(rows: Floats) -> Floats:
     """The extremes without those that come too soon after another; two at least."""
-    if len(rows) > 1 and (np.diff(rows[:, 0]) >= _SHORTEST).all():
-        return rows
     kept = [rows[0]]
     for row in rows[1:]:
         if row[0] - kept[-1][0] >= _SHORTEST:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import pickle
 import platform
 from collections.abc import Iterable
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from gmr.actionlets.actions.library import Library
     from gmr.actionlets.actions.taking import Take
     from gmr.actionlets.body import Body
+    from gmr.motion import Motion
 
 __all__ = ["Made", "Work", "make", "versions"]
 
@@ -93,7 +95,7 @@ def _made(work: Work, number: int, writes: bool) -> Made:
     file = work.plan.file(number)
     try:
         take = _take(work, order)
-        data = b"".join(bytes(piece) for piece in named_format(work.plan.format).write(take.motion))
+        data = _file(work.plan.format, take.motion)
     except GmrError as error:
         return Made(number, failed=str(error))
     record = _record(work.plan, order, take, file, data)
@@ -103,6 +105,13 @@ def _made(work: Work, number: int, writes: bool) -> Made:
     path.parent.mkdir(parents=True, exist_ok=True)
     write_pieces(path, [data])
     return Made(number, record)
+
+
+def _file(format: str, motion: Motion) -> bytes:
+    """What is in the file of a motion."""
+    found = io.BytesIO()
+    found.writelines(named_format(format).write(motion))
+    return found.getvalue()
 
 
 def _take(work: Work, order: Order) -> Take:

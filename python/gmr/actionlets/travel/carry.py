@@ -24,7 +24,7 @@ from gmr.actionlets.travel.plan import Planned, asked, kinds, stances
 from gmr.actionlets.travel.report import Report, measured
 from gmr.actionlets.travel.rocking import Rocking, rocking
 from gmr.actionlets.travel.stepping import stepped
-from gmr.actionlets.travel.turns import turned
+from gmr.actionlets.travel.turns import dots, times, turned
 from gmr.editing.easing import smooth_above
 from gmr.errors import ActionletError
 
@@ -156,7 +156,7 @@ def _footings(
     found = []
     for k, leg in enumerate(legs_of(body)):
         foot = place_foot(leg, values)
-        nominal = Placed(turned(pelvis, foot.ankle), pelvis @ foot.foot)
+        nominal = Placed(turned(pelvis, foot.ankle), times(pelvis, foot.foot))
         own = [stance for stance in every if stance.leg == k]
         found.append(footing(leg, sole_of(leg), nominal, turned(pelvis, leg.hip), own, fps))
     if not any(one.stances for one in found):
@@ -295,7 +295,7 @@ def _sunk(both: Sequence[Footing], angles: Floats, pelvis: Floats, root: Floats,
     for one in both:
         foot = place_foot(one.leg, angles)
         for point in (one.leg.heel, one.leg.toe):
-            height = (pelvis[:, 1] * (foot.ankle + turned(foot.foot, point))).sum(axis=1) + root[:, 1]
+            height = dots(pelvis[:, 1], foot.ankle + turned(foot.foot, point)) + root[:, 1]
             lowest = np.minimum(lowest, height)
     return smooth_above(np.maximum(-lowest, 0), max(round(_RISES * fps), 2))
 

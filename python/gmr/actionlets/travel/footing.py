@@ -16,7 +16,7 @@ from gmr.actionlets.travel.plan import Stance
 from gmr.actionlets.travel.slopes import spread
 from gmr.actionlets.travel.sole import Sole, pitch_of, yaw_of
 from gmr.actionlets.travel.swinging import Air, in_air
-from gmr.actionlets.travel.turns import about_y, about_z, pitched, turned
+from gmr.actionlets.travel.turns import about_y, about_z, bent, pitched, times, turned
 from gmr.editing.easing import smooth_step
 
 __all__ = ["Footing", "Standing", "footing", "with_footprints"]
@@ -63,12 +63,11 @@ class Footing:
 
     def spread(self, values: Floats) -> Floats:
         """(n, ...) one value of each stance, in each of its frames."""
-        counts = [stance.last - stance.first + 1 for stance in self.stances]
-        return np.repeat(values, counts, axis=0)
+        return np.repeat(values, _counts(self.stances), axis=0)
 
     def edges(self) -> NDArray[np.intp]:
         """Which of the frames on the ground are among the first or last three of their stances."""
-        counts = np.array([stance.last - stance.first + 1 for stance in self.stances], np.intp)
+        counts = _counts(self.stances)
         since = spread(counts)
         until = np.repeat(counts, counts) - 1 - since
         return np.flatnonzero(np.minimum(since, until) < 3)
@@ -91,7 +90,7 @@ class Footing:
         """(m, 3) where the sole touches the ground in the world, in some of the frames on the ground."""
         _, ground = self.sole.contact(pitch)
         touch = self.place[rows] + level(ground, self.yaw[rows])
-        return np.stack([touch[:, 0], np.zeros(len(touch)), touch[:, 1]], axis=1)
+        return np.array([touch[:, 0], np.zeros(len(touch)), touch[:, 1]]).T
 
     def planted(
         self,
@@ -113,9 +112,9 @@ class Footing:
         """
         point, ground = self.sole.contact(pitch)
         yaw = self.yaw[rows] - facing
-        foot = about_y(yaw + _pivot(yaw, pitch)) @ pitched(pitch)
+        foot = bent(about_y(yaw + _pivot(yaw, pitch)), -pitch)
         if roll is not None:
-            foot = foot @ about_z(roll)
+            foot = times(foot, about_z(roll))
         arm = turned(foot, point)
         end = -arm
         end[:, ::2] = self.place[rows] + level(ground, self.yaw[rows]) - level(arm[:, ::2], facing)
@@ -126,9 +125,8 @@ class Footing:
 
         A foot on its toes hands the body on: where it puts the ankle says little about the pelvis.
         """
-        shares = [_load(stance, fps) for stance in self.stances]
-        load = np.concatenate(shares) if shares else np.empty(0)
-        return load * (1 - _HANDED_ON * smooth_step(-self.pitch / np.radians(20.0)))
+        handed_on = _HANDED_ON * smooth_step(-self.pitch / np.radians(20.0))
+        return _loads(self.stances, fps) * (1 - handed_on)
 
     def with_heels(self, root: Floats, heading: Floats) -> Footing:
         """The heels risen where a leg would be too short for a pelvis at (F, 3) ``root``."""
@@ -173,13 +171,13 @@ def footing(
     leg: Leg, sole: Sole, nominal: Placed, hip: Floats, stances: Sequence[Stance], fps: float
 ) -> Footing:
     """The stances of a leg, without footprints yet: they are all at the origin."""
-    counts = np.array([stance.last - stance.first + 1 for stance in stances], np.intp)
-    frames = [np.arange(stance.first, stance.last + 1) for stance in stances]
-    on = np.concatenate(frames) if frames else np.empty(0, np.intp)
+    counts = _counts(stances)
+    since = spread(counts)
+    on = np.repeat(np.array([stance.first for stance in stances], np.intp), counts) + since
     pitch = sole.settled(pitch_of(nominal.foot[on]))
     starts = np.cumsum(counts) - counts
-    shares = [np.linspace(0 if stance.lands else 1, 1, n) for stance, n in zip(stances, counts, strict=True)]
-    over = np.concatenate(shares) if shares else np.empty(0)
+    lands = np.repeat(np.array([stance.lands for stance in stances], np.bool_), counts)
+    over = np.where(lands, since / np.repeat(np.maximum(counts - 1, 1), counts), 1.0)
     place, yaw = np.zeros((len(on), 2)), np.zeros(len(on))
     air = in_air(stances, len(hip), fps)
     return Footing(leg, sole, nominal, hip, tuple(stances), air, on, starts, over, pitch, place, yaw)
@@ -200,7 +198,7 @@ def with_footprints(one: Footing, ground: Floats, heading: Floats) -> Footing:
     if not one.stances:
         return one
     on = one.frames
-    weights = np.concatenate([_raised_cosine(stance.last - stance.first + 1) for stance in one.stances])
+    weights = _raised_cosines(_counts(one.stances))
     nominal_yaw = heading[on] + yaw_of(one.nominal.foot[on])
     yaw = one.spread(np.add.reduceat(weights * nominal_yaw, one.starts))
     forward, _ = one.rolled()
@@ -209,9 +207,16 @@ def with_footprints(one: Footing, ground: Floats, heading: Floats) -> Footing:
     return replace(one, place=place, yaw=yaw)
 
 
-def _raised_cosine(count: int) -> Floats:
-    weights = np.hanning(count + 2)[1:-1]
-    return np.asarray(weights / weights.sum(), np.float64)
+def _counts(stances: Sequence[Stance]) -> NDArray[np.intp]:
+    """(g,) frames of each stance."""
+    return np.array([stance.last - stance.first + 1 for stance in stances], np.intp)
+
+
+def _raised_cosines(counts: NDArray[np.intp]) -> Floats:
+    """(n,) weights that rise and fall over each of some stances and sum to 1 in it."""
+    weights = 1 - np.cos(2 * np.pi * (spread(counts) + 1) / np.repeat(counts + 1, counts))
+    sums = np.add.reduceat(weights, np.cumsum(counts) - counts)
+    return np.asarray(weights / np.repeat(sums, counts), np.float64)
 
 
 def _pivot(yaw: Floats, pitch: Floats) -> Floats:
@@ -221,10 +226,15 @@ def _pivot(yaw: Floats, pitch: Floats) -> Floats:
     return np.asarray(-np.sign(yaw) * kept * smooth_step(np.abs(pitch) / np.radians(10.0)), np.float64)
 
 
-def _load(stance: Stance, fps: float) -> Floats:
+def _loads(stances: Sequence[Stance], fps: float) -> Floats:
     """(n,) share of the body that a foot takes over when it lands and hands on when it leaves."""
-    count = stance.last - stance.first + 1
-    ramp = max(min(_LOADING * fps, (count - 1) / 2), 1.0)
-    up = np.arange(count) / ramp if stance.lands else np.ones(count)
-    down = np.arange(count)[::-1] / ramp if stance.leaves else np.ones(count)
+    counts = _counts(stances)
+    since = spread(counts)
+    until = np.repeat(counts, counts) - 1 - since
+    ramps = np.repeat(np.maximum(np.minimum(_LOADING * fps, (counts - 1) / 2), 1.0), counts)
+    lands, leaves = (
+        np.repeat(np.array(ends, np.bool_), counts)
+        for ends in ([stance.lands for stance in stances], [stance.leaves for stance in stances])
+    )
+    up, down = np.where(lands, since / ramps, 1.0), np.where(leaves, until / ramps, 1.0)
     return smooth_step(np.minimum(up, down)) + 1e-9

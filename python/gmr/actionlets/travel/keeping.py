@@ -18,7 +18,7 @@ from gmr.actionlets.travel.leg import leg_angles, placed, toe_leg_angles
 from gmr.actionlets.travel.limits import MARGIN, near, squashed
 from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.sole import pitch_of
-from gmr.actionlets.travel.turns import turned_back
+from gmr.actionlets.travel.turns import seen_from, times, turned_back
 
 __all__ = ["kept_in_range"]
 
@@ -98,7 +98,7 @@ class _Stood:
     def _angles(self, pitch: Floats, roll: Floats) -> Floats:
         """(m, 7) of a foot that stands with that pitch and roll."""
         end, foot = self.one.planted(self.heading, pitch, roll, self.rows)
-        return leg_angles(self.one.leg, self._way(end), self.rotation, self.pelvis.swapaxes(1, 2) @ foot)
+        return leg_angles(self.one.leg, self._way(end), self.rotation, seen_from(self.pelvis, foot))
 
     def _way(self, end: Floats) -> Floats:
         """(m, 3) a place in the world in the frame of the pelvis."""
@@ -143,7 +143,7 @@ class _Stood:
 
     def _pitch(self, angles: Floats) -> Floats:
         """(m,) radians that the toes point up."""
-        return pitch_of(self.pelvis @ placed(self.one.leg, angles).foot)
+        return pitch_of(times(self.pelvis, placed(self.one.leg, angles).foot))
 
     def _some(self, which: NDArray[np.intp]) -> _Stood:
         """Some of the frames."""
@@ -167,7 +167,7 @@ def _secant(of: Callable[[Floats], Floats], wanted: Floats, at: Floats, steps: i
     """
     x, lacks, slope = np.zeros(len(at)), wanted - at, np.full(len(at), _USUAL)
     for step in range(steps):
-        further: Floats = np.clip(x + lacks / slope, -_MOST, _MOST)
+        further: Floats = np.minimum(np.maximum(x + lacks / slope, -_MOST), _MOST)
         if step + 1 == steps:
             return further
         left, way = wanted - of(further), further - x

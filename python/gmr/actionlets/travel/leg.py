@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.actionlets.travel.turns import angles_of, bent, product, seen_from, times, turned
+from gmr.actionlets.travel.turns import angles_of, bent, dots, product, seen_from, times, turned
 
 __all__ = [
     "BENT",
@@ -197,7 +197,7 @@ def unlocked(knee: Floats) -> Floats:
 
 def lengths(vectors: Floats) -> Floats:
     """(n,) lengths of (n, 3) vectors."""
-    return np.asarray(np.sqrt(np.einsum("fi,fi->f", vectors, vectors)), np.float64)
+    return np.asarray(np.sqrt(dots(vectors, vectors)), np.float64)
 
 
 def _hip_angles(leg: Leg, way: Floats, hinge: Floats, rotation: Floats, tip: Floats) -> Floats:

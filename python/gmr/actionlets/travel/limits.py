@@ -34,13 +34,13 @@ def squashed(angles: Floats, low: Floats, high: Floats) -> Floats:
         low, high: (K,) radians, further apart than two margins.
     """
     top, bottom = high - MARGIN, low + MARGIN
-    kept = np.clip(angles, bottom, top)
+    kept = np.minimum(np.maximum(angles, bottom), top)
     y = (angles - kept) / MARGIN
     return np.asarray(kept + MARGIN * y / np.sqrt(1 + y * y), np.float64)
 
 
 def unsquashed(angles: Floats, low: Floats, high: Floats) -> Floats:
     """(..., K) what is squashed to these angles; those beyond the limits count as just within them."""
-    kept = np.clip(angles, low + MARGIN, high - MARGIN)
-    z = np.clip((angles - kept) / MARGIN, -_FARTHEST, _FARTHEST)
+    kept = np.minimum(np.maximum(angles, low + MARGIN), high - MARGIN)
+    z = np.minimum(np.maximum((angles - kept) / MARGIN, -_FARTHEST), _FARTHEST)
     return np.asarray(kept + MARGIN * z / np.sqrt(1 - z * z), np.float64)

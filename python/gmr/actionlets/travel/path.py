@@ -37,7 +37,7 @@ def level(vectors: Floats, heading: Floats | float) -> Floats:
     """(F, 2) x and z of (F, 2) level vectors turned by (F,) headings; by minus the heading to turn back."""
     c, s = np.cos(heading), np.sin(heading)
     x, z = vectors[..., 0], vectors[..., 1]
-    return np.asarray(np.stack([x * c + z * s, z * c - x * s], axis=-1), np.float64)
+    return np.asarray(np.array([x * c + z * s, z * c - x * s]).T, np.float64)
 
 
 def _summed(rates: Floats) -> Floats:

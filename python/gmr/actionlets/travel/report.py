@@ -16,7 +16,7 @@ from gmr.actionlets.travel.mass import mass_from_pelvis
 from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.plan import SIDES, Planned, Stance, asked, stances
 from gmr.actionlets.travel.sole import pitch_of, yaw_of
-from gmr.actionlets.travel.turns import pitched, turned
+from gmr.actionlets.travel.turns import pitched, times, turned
 
 if TYPE_CHECKING:
     from gmr.actionlets.body import Body
@@ -206,7 +206,7 @@ def _feet(
         foot = place_foot(leg, angles)
         for point, found in ((leg.heel, heels), (leg.toe, toes)):
             found.append(pelvis + _in_world(turned(turn, foot.ankle + turned(foot.foot, point)), heading))
-        yaws.append(heading + yaw_of(turn @ foot.foot))
+        yaws.append(heading + yaw_of(times(turn, foot.foot)))
     return heels, toes, yaws
 
 
@@ -219,7 +219,7 @@ def _feet_speed(body: Body, planned: Floats, every: Sequence[Stance], fps: float
     way, steps = 0.0, 0
     for stance in every:
         foot, at = feet[stance.leg], stance.frames
-        pitch = soles[stance.leg].settled(pitch_of(turn[at] @ foot.foot[at]))
+        pitch = soles[stance.leg].settled(pitch_of(times(turn[at], foot.foot[at])))
         point, ground = soles[stance.leg].contact(pitch)
         rolled = ground[:, 1] - turned(pitched(pitch), point)[:, 2]
         place = turned(turn[at], foot.ankle[at])[:, 2] - rolled

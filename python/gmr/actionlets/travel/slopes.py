@@ -10,6 +10,9 @@ __all__ = ["slopes", "spread"]
 Floats = NDArray[np.float64]
 Frames = NDArray[np.intp]
 
+_WEIGHTS = np.array([[0.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [-1.5, 2.0, -0.5]])
+"""Of the nearest three frames of a run of one, two, or more."""
+
 
 def slopes(values: Floats, ends: Frames, inward: int, lengths: Frames) -> Floats:
     """(g, K) change a frame at the first or last frames of g runs, from the frames of the run alone.
@@ -22,11 +25,11 @@ def slopes(values: Floats, ends: Frames, inward: int, lengths: Frames) -> Floats
         inward: 1 where the runs begin there, -1 where they end.
         lengths: (g,) frames of each run less one; -1: there is none, and the slope is 0.
     """
-    behind = np.minimum(np.arange(3), np.maximum(lengths, 0)[:, None])
-    long, short = np.array([-1.5, 2.0, -0.5]), np.array([-1.0, 1.0, 0.0])
-    weights = np.where(lengths[:, None] > 1, long, np.where(lengths[:, None] == 1, short, 0.0))
-    near = values[np.clip(ends[:, None] + inward * behind, 0, len(values) - 1)]
-    return np.asarray(inward * (weights[:, :, None] * near).sum(axis=1), np.float64)
+    others = np.minimum(np.maximum(lengths, 0), 2)
+    near = ends[:, None] + inward * np.minimum(np.arange(3), others[:, None])
+    near = np.minimum(np.maximum(near, 0), len(values) - 1)
+    found: Floats = inward * np.einsum("gi,gik->gk", _WEIGHTS[others], values[near])
+    return found
 
 
 def spread(counts: Frames) -> Frames:

@@ -15,7 +15,7 @@ from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.rocking import Rocking
 from gmr.actionlets.travel.sole import yaw_of
 from gmr.actionlets.travel.swinging import cleared, led_over
-from gmr.actionlets.travel.turns import turned, turned_back
+from gmr.actionlets.travel.turns import dots, seen_from, turned, turned_back
 
 __all__ = ["stepped"]
 
@@ -97,7 +97,7 @@ def _swung(leg: Leg, free: Floats, rise: Floats, pelvis: Floats, root: Floats) -
     up = pelvis[:, 1]
     heel, toe = foot.ankle + turned(foot.foot, leg.heel), foot.ankle + turned(foot.foot, leg.toe)
     height = root[:, 1]
-    lift = cleared((up * heel).sum(axis=1) + height, (up * toe).sum(axis=1) + height, rise)
+    lift = cleared(dots(up, heel) + height, dots(up, toe) + height, rise)
     low = np.flatnonzero(lift > 0)
     if len(low):
         way = foot.ankle[low] + lift[low, None] * up[low]
@@ -121,4 +121,4 @@ def _on_ground(
     rotation = planned[:, _HIP_ROTATION] + leg.hip_signs[2] * _LEG_TURNS * yaw
     low, high = leg.limits
     rotation = squashed(rotation, low[_HIP_ROTATION], high[_HIP_ROTATION])
-    return leg_angles(leg, way, rotation, pelvis.swapaxes(1, 2) @ foot)
+    return leg_angles(leg, way, rotation, seen_from(pelvis, foot))

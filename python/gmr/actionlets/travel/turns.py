@@ -15,6 +15,7 @@ __all__ = [
     "about_z",
     "angles_of",
     "bent",
+    "dots",
     "pitched",
     "product",
     "seen_from",
@@ -83,6 +84,12 @@ def times(matrix: Floats, other: Floats) -> Floats:
 def seen_from(matrix: Floats, other: Floats) -> Floats:
     """(F, 3, 3) ``M^T N``: the turns ``N`` in the frame of ``M``."""
     found: Floats = np.einsum("fji,fjk->fik", np.asfortranarray(matrix), np.asfortranarray(other), order="F")
+    return found
+
+
+def dots(one: Floats, other: Floats) -> Floats:
+    """(F,) ``u v`` of (F, 3) vectors."""
+    found: Floats = np.einsum("fi,fi->f", one, other)
     return found
 
 
