@@ -72,6 +72,15 @@ def test_the_left_handed_do_the_same_in_a_mirror(name: str) -> None:
     np.testing.assert_allclose(mirrored, right, atol=5e-3)
 
 
+@pytest.mark.parametrize(("tempo", "speed"), [(90, 0.0), (90, 1.2), (105, 1.4), (120, 1.2), (140, 1.4)])
+def test_a_march_moves_up_and_down_by_few_centimetres_with_steps_of_up_to_80_centimetres(
+    tempo: float, speed: float
+) -> None:
+    take = library()["march"].take(4, 60, tempo=tempo, speed=speed)
+    assert np.ptp(take.carried.root[80:-40, 1]) < 0.055
+    assert take.report.slide_mm < 1
+
+
 def test_the_names_that_the_interface_promises_are_there() -> None:
     known = library()
     assert known["running"] is known["run"]
