@@ -19,7 +19,7 @@ from gmr.completion.tempo import rows_of
 from gmr.completion.words import headline, sentences
 from gmr.evaluation.scenario import constant_trials
 from gmr.evaluation.simulation import simulated
-from gmr.matching import Database, Profile, Status, run_trials
+from gmr.matching import LOCOMOTION, Database, Profile, Status, run_trials
 from gmr.matching.trial import Tracking
 from gmr.pruning.outcomes import outcomes_of
 from walkers import CMU, walker
@@ -149,6 +149,22 @@ def test_frames_that_are_there_already_can_save_nothing_and_those_that_are_lacki
     assert bound(rows_of(database, 0), asked) == pytest.approx(0.0, abs=1e-4)
     better = Database.build({"turn": walker(6, 1.2, 0.4)}, normalization=database.normalization)
     assert bound(rows_of(better, 0), asked) > 0.1
+
+
+def test_the_second_evaluation_has_the_features_and_the_switches_of_the_first(
+    straight: dict[str, gmr.Motion], others: dict[str, gmr.Motion]
+) -> None:
+    before = gmr.evaluate(
+        straight,
+        schema=LOCOMOTION.weighed({"hips velocity": 3.0}),
+        switched_speed=1.6,
+        switch_every=2.0,
+        speeds=(1.2,),
+        turn_rates_deg=TURNS,
+    )
+    found = complete_from(straight, others, before=before)
+    assert found.added
+    assert found.after.summary.settings == before.summary.settings
 
 
 def test_standing_still_is_no_cure(straight: dict[str, gmr.Motion]) -> None:

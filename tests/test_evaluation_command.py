@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import resource
 import signal
@@ -11,8 +12,11 @@ from pathlib import Path
 
 import pytest
 
+import gmr
 from gmr.cli.commands import gmr as command
 from gmr.cli.common import finished
+from gmr.cli.evaluate import evaluate
+from gmr.matching.schema import LOCOMOTION
 from locomotion import Arc
 from walker import walker_bvh, write_walkers
 
@@ -310,3 +314,49 @@ def test_weights_are_tuned_where_asked(folder: Path, tmp_path: Path, capsys: Cap
     assert set(found["weights"]) >= {"hips velocity", "trajectory facing"}
     assert len(found["trials"]) == 6
     assert run(folder, folder, "--tune") == 2
+
+
+def test_weights_and_switches_of_the_command_are_those_of_python(folder: Path, capsys: Captured) -> None:
+    chosen = ("--weight", "foot position=2", "--weight", "trajectory facing=0.5")
+    switches = ("--switched-speed", "1.5", "--switch-every", "2")
+    assert run(folder, *SMALL, *chosen, *switches, "--json", "-q") == 0
+    told = json.loads(capsys.readouterr().out)
+    schema = LOCOMOTION.weighed({"foot position": 2.0, "trajectory facing": 0.5})
+    found = gmr.evaluate(
+        folder,
+        schema=schema,
+        switched_speed=1.5,
+        switch_every=2.0,
+        speeds=(1.0, 2.0),
+        turn_rates_deg=(-50.0, 0.0, 50.0),
+    )
+    assert told["settings"] == found.summary.settings
+    assert told["settings"]["weights"]["left foot position"] == 2.0
+    assert [row["offset_mean"] for row in told["trials"]] == found.measured.trials["offset_mean"].tolist()
+
+
+def test_every_option_has_its_counterpart_in_the_documentation() -> None:
+    page = (Path(__file__).parent.parent / "docs" / "evaluation.md").read_text(encoding="utf-8")
+    rows = [row.split("|")[1:3] for row in page.partition("## From the command line")[2].splitlines()[5:]]
+    typed, called = (" ".join(cells) for cells in zip(*rows, strict=True))
+    options = [each.opts[-1] for each in evaluate.params if each.opts[0].startswith("-")]
+    assert [option for option in options if f"`{option}`" not in typed] == []
+    names = inspect.signature(gmr.evaluate).parameters
+    assert [name for name in names if f"`{name}`" not in called] == []
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "says"),
+    [
+        ("--weight", "hips=2", "no feature group is called 'hips'"),
+        ("--weight", "hips velocity=-1", "give a number, 0 or more"),
+        ("--weight", "hips velocity", "is not GROUP=WEIGHT"),
+        ("--switched-speed", "nan", "from 0.01 to 100 m/s"),
+        ("--switch-every", "0", "from 0.5 to 60 s"),
+    ],
+)
+def test_weights_and_switches_that_cannot_be_are_wrong_usage(
+    folder: Path, capsys: Captured, option: str, value: str, says: str
+) -> None:
+    assert run(folder, "--no-report", option, value) == 2
+    assert says in capsys.readouterr().err

@@ -321,3 +321,21 @@ def test_the_configuration_of_a_clip_does_not_matter() -> None:
     moved = clip.with_roots(["LeftFoot", "Head"])
     one, other = (gmr.matching.Database.build([motion]) for motion in (clip, moved))
     np.testing.assert_array_equal(one.features, other.features)
+
+
+def test_a_schema_weighed_anew_scales_just_the_groups_that_are_named() -> None:
+    clip = walker(3, 1.2)
+    plain = Database.build([clip])
+    weighed = Database.build([clip], schema=LOCOMOTION.weighed({"foot velocity": 3.0}))
+    for name, columns in LOCOMOTION.slices().items():
+        factor = 3.0 if name.endswith("foot velocity") else 1.0
+        np.testing.assert_allclose(
+            weighed.features[:, columns], factor * plain.features[:, columns], rtol=1e-5, atol=1e-5
+        )
+    assert LOCOMOTION.weighed({group.name: group.weight for group in LOCOMOTION.groups}) == LOCOMOTION
+    for weights, says in (
+        ({"hips": 1.0}, "no feature group is called"),
+        ({"hips velocity": -1.0}, "0 or more"),
+    ):
+        with pytest.raises(gmr.DatasetError, match=says):
+            LOCOMOTION.weighed(weights)

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 import gmr
 from gmr.evaluation import Evaluation
 from gmr.evaluation.simulation import Simulation
-from gmr.matching import Database
+from gmr.matching import LOCOMOTION, Database
 from gmr.matching.trial import TrialLog, run_trials
 from gmr.pruning import Part, Pruning, Score, lossless, prune, write_pruned
 from gmr.pruning.outcomes import joined, outcomes_of
@@ -296,3 +296,9 @@ def test_a_score_tells_offset_and_lost_trials_together() -> None:
     best, worse = Score(0.2, 10, 20), Score(0.3, 8, 20)
     assert worse.worse_than(best) == pytest.approx(0.1 + 0.5 * 2 / 20)
     assert Score(math.nan, 8, 20).worse_than(Score(math.nan, 10, 20)) == pytest.approx(0.05)
+
+
+def test_files_are_measured_by_the_features_of_the_evaluation(folder: Path, tmp_path: Path) -> None:
+    schema = LOCOMOTION.weighed({"foot position": 0.0, "trajectory facing": 4.0})
+    found = gmr.evaluate(folder, schema=schema, **{**GRID, "speeds": (1.0, 2.0)})
+    assert write_pruned(prune(found, "lossless"), folder, tmp_path / "less").identical

@@ -42,6 +42,7 @@ def motion(walk_path: Path) -> typed.Motion:
         (lambda m, d: gmr.evaluate([m], speeds=1.0), "speeds is a list of numbers, not 1.0"),
         (lambda m, d: gmr.evaluate([m], turn_rates_deg=["left"]), "turn_rates_deg is a list of numbers"),
         (lambda m, d: gmr.evaluate([m], names="hips"), "names are joints by role"),
+        (lambda m, d: gmr.evaluate([m], schema=[1.0, 2.0]), "a schema is a gmr.matching.Schema"),
         (
             lambda m, d: gmr.forward_kinematics([-1], [[0, 0, 0]], [[0, 0, 0, 1]], out=[1]),
             "an array to write",

@@ -24,10 +24,12 @@ from gmr.cli.progress import Phases
 from gmr.cli.pruning import Pruned, check_pruning, prune_folder, pruning_options
 from gmr.cli.scenarios import check_scenarios, scenario_options
 from gmr.cli.tuning import Tuned, tune_evaluation, tuning_option
+from gmr.cli.weights import weight_option
 
 if TYPE_CHECKING:
     from gmr.evaluation import Comparison, Evaluation
     from gmr.evaluation.scenarios.asked import Asked
+    from gmr.matching.schema import Schema
     from gmr.matching.trial import Tracking
     from gmr.pages.section import Section
 
@@ -49,6 +51,7 @@ Examples:
   gmr evaluate takes/ --prune 30% --cluster tcp://10.0.0.1:8786
   gmr evaluate takes/ --complete-from archive/ and what clips of another folder would bring
   gmr evaluate takes/ --tune                   would other weights of the features do better?
+  gmr evaluate takes/ --weight "hips velocity=2" --weight "trajectory facing=1"
   gmr evaluate takes/ --json > found.json      for a machine
 
 \b
@@ -96,6 +99,7 @@ Exit codes: 0 all files were evaluated, 1 some or all could not be (they are nam
     "--preset", type=click.Choice(["mig2022"]), help="Pace the trials as the authors of the paper did."
 )
 @evaluation_options
+@weight_option
 @pruning_options
 @cluster_options
 @completing_options
@@ -112,12 +116,15 @@ def evaluate(
     tracking: str,
     scenarios: tuple[Asked, ...],
     seed: int,
+    switched_speed: float,
+    switch_every: float,
     speeds: tuple[float, ...] | None,
     turn_rates: tuple[float, ...] | None,
     preset: str | None,
     names: dict[str, str],
     unit: float | None,
     threads: int | None,
+    schema: Schema,
     prune: float | str | None,
     prune_out: Path,
     workers: int | None,
@@ -136,8 +143,10 @@ def evaluate(
     its own: all are sent through the same trials, and first comes what one does that the others cannot.
     """
     import gmr
+    from gmr.evaluation.scenario import Switching
 
-    check_scenarios(scenarios, speeds, turn_rates, preset, seed)
+    switching = Switching(switched_speed, switch_every)
+    check_scenarios(scenarios, speeds, turn_rates, preset, seed, switching)
     if len(folders) > 1 and prune is not None:
         raise click.UsageError("--prune makes one dataset smaller; give one folder.")
     check_workers(workers, cluster)
@@ -158,6 +167,8 @@ def evaluate(
             mirror=mirror,
             scenarios=scenarios,
             seed=seed,
+            switched_speed=switched_speed,
+            switch_every=switch_every,
             tracking=("time", "velocity") if tracking == "both" else cast("Tracking", tracking),
             speeds=speeds,
             turn_rates_deg=turn_rates,
@@ -166,6 +177,7 @@ def evaluate(
             cluster=cluster,
             names=names,
             unit=unit,
+            schema=schema,
             progress=phases.tell,
         )
         added: dict[str, Pruned | Tuned | Completed] = {}

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 if TYPE_CHECKING:
+    from gmr.evaluation.scenario import Switching
     from gmr.evaluation.scenarios.asked import Asked
 
 __all__ = ["check_scenarios", "scenario_options"]
@@ -16,7 +17,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 def scenario_options(command: Command) -> Command:
-    """``scenarios`` and ``seed`` as :func:`gmr.evaluate` has them."""
+    """``scenarios``, ``seed``, ``switched_speed`` and ``switch_every`` as :func:`gmr.evaluate` has them."""
     for option in reversed(_OPTIONS):
         command = option(command)
     return command
@@ -28,6 +29,7 @@ def check_scenarios(
     turn_rates: tuple[float, ...] | None,
     preset: str | None,
     seed: int,
+    switching: Switching,
 ) -> None:
     """Learn before all the work what cannot be asked for.
 
@@ -42,6 +44,7 @@ def check_scenarios(
         speeds=speeds or DEFAULT_SPEEDS,
         turn_rates_deg=turn_rates or DEFAULT_TURN_RATES_DEG,
         preset=preset or "even",
+        switching=switching,
     )
     try:
         grid.trials()
@@ -68,4 +71,18 @@ _OPTIONS = (
         "CSV file of path points (x,z or x,z,t or x,z,speed). Repeatable.  [default: both]",
     ),
     click.option("--seed", type=click.IntRange(min=0), default=0, help="Of the random paths.  [default: 0]"),
+    click.option(
+        "--switched-speed",
+        type=float,
+        default=4.0,
+        show_default=True,
+        help="The other speed of switching trials, metres per second.",
+    ),
+    click.option(
+        "--switch-every",
+        type=float,
+        default=5.0,
+        show_default=True,
+        help="Seconds from one switch of the speed to the next.",
+    ),
 )

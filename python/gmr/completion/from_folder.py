@@ -28,7 +28,10 @@ from gmr.threads import thread_count
 
 __all__ = ["complete_from"]
 
-_AS_EVALUATED: Final = ("preset", "scenarios", "mirror", "tracking", "speeds", "turn_rates_deg")
+_AS_EVALUATED: Final = (
+    *("preset", "scenarios", "mirror", "tracking", "speeds", "turn_rates_deg"),
+    *("switched_speed", "switch_every"),
+)
 
 _ON_THE_GRID: Final = ("constant", "switching")
 """Scenarios of which the holes are known by speed and turn rate; others are not run again."""
@@ -90,6 +93,7 @@ def complete_from(
         settings = {name: before.summary.settings[name] for name in _AS_EVALUATED}
         grid = [name for name in settings["scenarios"] if name in _ON_THE_GRID]
         settings["scenarios"] = grid or "constant"
+        settings["schema"] = before.simulation.database.schema
     assert before.simulation is not None
     hunt = _Hunt(before, motions, {"names": names, "unit": unit}, thread_count(threads), tell)
     choices, refused, added, held = hunt.found(others, fill, lay, at_most)

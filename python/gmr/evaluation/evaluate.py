@@ -38,6 +38,7 @@ from gmr.formats.registry import suffixes
 from gmr.matching.database import Database
 from gmr.matching.naming import named
 from gmr.matching.prepare import unit_text
+from gmr.matching.schema import LOCOMOTION, Schema
 from gmr.matching.trial import Tracking
 from gmr.motion import Motion
 from gmr.threads import thread_count
@@ -69,6 +70,7 @@ def evaluate(
     progress: Progress | None = None,
     names: Mapping[str, str | int] | None = None,
     unit: float | str | None = None,
+    schema: Schema = LOCOMOTION,
     errors: Literal["raise", "collect"] = "collect",
 ) -> Evaluation:
     """Measure what a set of locomotion clips can do.
@@ -101,6 +103,8 @@ def evaluate(
             much of it is done, and of how much; what it raises ends the evaluation.
         names: joints by role where they are not found by themselves: ``{"left_foot": "foot_l"}``.
         unit: metres per file unit (or "cm", ...) of files that do not say; guessed from the body by default.
+        schema: the features by which frames are compared, with their weights: ``LOCOMOTION.weighed({"hips
+            velocity": 2.0})``, or :attr:`gmr.evaluation.Tuning.chosen`.
         errors: "collect": files that cannot be used are left out and named in ``failed``; "raise": the first
             of them ends the evaluation.
 
@@ -112,11 +116,13 @@ def evaluate(
         FormatError: there is no such folder; or a file cannot be read and ``errors`` is "raise"; or a file of
             path points is none.
         GmrError: the cluster cannot be reached; or the extra ``cluster`` is not installed.
-        ValueError: a speed, turn rate, preset, scenario, tracking or thread count that makes no sense.
+        ValueError: a speed, turn rate, preset, scenario, tracking, schema or number of threads that makes no
+            sense.
     """
     trackings = _trackings(tracking)
     if names is not None and not isinstance(names, Mapping):
         raise TypeError(f"names are joints by role, as in {{'left_foot': 'foot_l'}}, not {names!r:.60}")
+    _check_schema(schema)
     thread_total = thread_count(threads)
     switching = Switching(*_numbers("switched_speed and switch_every", (switched_speed, switch_every)))
     grid = OnGrid(
@@ -134,7 +140,7 @@ def evaluate(
     with _format_warnings() as odd:
         dataset, motions, failed = _motions(source, thread_total, errors, tell)
     tell("preparing", 0, 1)
-    database = Database.build(motions, mirror=mirror, names=names, unit=unit)
+    database = Database.build(motions, mirror=mirror, schema=schema, names=names, unit=unit)
     if database.excluded and errors == "raise":
         name, why = next(iter(database.excluded.items()))
         raise DatasetError(f"{name}: {why}")
@@ -154,6 +160,7 @@ def evaluate(
         "turn_rates_deg": sorted(map(float, grid.turn_rates_deg)),
         "switched_speed": switching.speed,
         "switch_every": switching.every,
+        "weights": {group.name: float(group.weight) for group in schema.groups},
         "limits": asdict(Limits()),
     }
     frames = frames_of(database)
@@ -192,6 +199,15 @@ def _trackings(tracking: Tracking | Sequence[Tracking]) -> tuple[Tracking, ...]:
     if not asked or len(set(asked)) < len(asked):
         raise ValueError("give each tracking once, and at least one; known are time, velocity")
     return asked
+
+
+def _check_schema(schema: Schema) -> None:
+    if not isinstance(schema, Schema):
+        raise TypeError(f"a schema is a gmr.matching.Schema, not {schema!r:.60}")
+    if all(group.joint is None for group in schema.groups):
+        raise ValueError(
+            "the schema has no feature of a joint; poses are compared by such: give at least one"
+        )
 
 
 def _numbers(name: str, values: Sequence[float]) -> tuple[float, ...]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -104,6 +105,28 @@ class Schema:
             spread[slices[name]] = weight
         return spread
 
+    def weighed(self, weights: Mapping[str, float]) -> Schema:
+        """The same features with other weights.
+
+        Args:
+            weights: by the names of groups, 0 or more; ``"foot position"`` stands for those of the left and
+                the right. Groups left out keep theirs.
+
+        Raises:
+            DatasetError: no group is called so; or a weight is none.
+        """
+        named = {name: [group.name for group in self.groups if _is(group, name)] for name in weights}
+        for name, weight in weights.items():
+            if not named[name]:
+                known = quoted([group.name for group in self.groups], 20)
+                raise DatasetError(f"no feature group is called '{name}'; there are {known}")
+            if not 0 <= weight < math.inf:
+                raise DatasetError(f"the weight of '{name}' is {weight:g}; give a number, 0 or more")
+        found = {group: weight for name, weight in weights.items() for group in named[name]}
+        return Schema(
+            tuple(replace(group, weight=found.get(group.name, group.weight)) for group in self.groups)
+        )
+
     def resolve(
         self, skeleton: Skeleton, roles: Mapping[str, int], rate: float
     ) -> list[tuple[str, str, int | None, list[int], float]]:
@@ -124,6 +147,11 @@ class Schema:
             )
             for group in self.groups
         ]
+
+
+def _is(group: Group, name: str) -> bool:
+    sideless = " ".join(word for word in group.name.split() if word not in ("left", "right"))
+    return name in (group.name, sideless)
 
 
 def _joint(group: Group, skeleton: Skeleton, roles: Mapping[str, int]) -> int:

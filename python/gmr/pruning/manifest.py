@@ -39,7 +39,11 @@ def manifest(of: Pruning, written: Written, motions: Mapping[str, Motion]) -> st
             "files_with_the_scale_of_the_whole": _score(written.kept_scale),
             "files_by_themselves": _score(written.own_scale),
         },
-        "scale": {"offset": scale.offset.tolist(), "scale": scale.scale.tolist()},
+        # A feature without weight is divided by infinity, which JSON does not know.
+        "scale": {
+            "offset": scale.offset.tolist(),
+            "scale": [each if math.isfinite(each) else None for each in scale.scale.tolist()],
+        },
         "files": [
             {
                 "file": piece.file,

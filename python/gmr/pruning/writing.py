@@ -97,6 +97,7 @@ def write_pruned(
     beside = place.with_name(f".{place.name}.{secrets.token_hex(4)}")
     options: dict[str, Any] = {
         "mirror": bool(of.simulation.database.mirrored.any()),
+        "schema": of.simulation.database.schema,
         "names": names,
         "unit": unit,
     }

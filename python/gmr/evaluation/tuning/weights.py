@@ -9,7 +9,7 @@ the distances of features are weighted anew.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import count
 from typing import Any, Final
 
@@ -68,9 +68,7 @@ class Tuning:
     @property
     def chosen(self) -> Schema:
         """The features with the weights to use: tuned where that improves, else as they were."""
-        if not self.improves:
-            return self.schema
-        return Schema(tuple(replace(group, weight=self.weights[group.name]) for group in self.schema.groups))
+        return self.schema.weighed(self.weights) if self.improves else self.schema
 
     def mean(self, which: str, column: str) -> float:
         """The mean of a column of :attr:`trials` over the cells of one set."""
