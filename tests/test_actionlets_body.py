@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from bodies import alone, bodies, heights, in_range, seeds, sexes
 from gmr.actionlets import Actionlet, Body, Measured, Score, Track, posing
 from gmr.actionlets.dofs import DETAILED, PAPER
 from gmr.body.joints import find_joints
+from gmr.demo import demo_folder
 from gmr.errors import ActionletError
 from gmr.quaternions import conjugate, matrices, multiply
 from gmr.skinning.driving.body_parts import find_body
@@ -301,3 +303,19 @@ def test_the_extremes_of_a_score_are_checked_and_the_samples_of_what_was_measure
     over = Track((Measured(np.array([0.0, 1.0, 2.9, 1.0, 0.0]), 1.0),))
     with pytest.raises(ActionletError, match=r"left_hip\.flexion"):
         body.check(Score({"left_hip.flexion": over}))
+
+
+def test_a_body_like_one_whose_joints_have_no_known_names_has_its_shoulders_apart(tmp_path: Path) -> None:
+    numbers: dict[str, int] = {}
+    text = re.sub(
+        r"(ROOT|JOINT) (\S+)",
+        lambda found: f"{found[1]} b{numbers.setdefault(found[2], len(numbers))}",
+        (demo_folder() / "09_01.bvh").read_text(),
+    )
+    (tmp_path / "walk.bvh").write_text(text)
+    body = Body.like(gmr.read(tmp_path / "walk.bvh"))
+    at = {
+        name: body.skeleton.offsets[body.skeleton.index(f"{name}_shoulder"), 0] for name in ("left", "right")
+    }
+    assert at["left"] == -at["right"]
+    assert at["left"] > 0.15

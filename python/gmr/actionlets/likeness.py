@@ -22,6 +22,9 @@ __all__ = ["leg_of", "lengths_like"]
 
 Floats = NDArray[np.float64]
 
+_NARROWEST = 0.3
+"""Share of the published width below which two joints do not lie on either side of a body."""
+
 
 def lengths_like(measured: Motion | Skeleton, sex: str) -> tuple[float, Lengths]:
     """Stature and lengths of a measured body; see :meth:`gmr.actionlets.Body.like`."""
@@ -38,8 +41,8 @@ def lengths_like(measured: Motion | Skeleton, sex: str) -> tuple[float, Lengths]
         "shank": shank,
         "upper_arm": _length(body, "shoulder", "elbow"),
         "forearm": _length(body, "elbow", "wrist"),
-        "hip": _half(body, "hip"),
-        "shoulder": _half(body, "shoulder"),
+        "hip": _half(body, "hip", plain.hip),
+        "shoulder": _half(body, "shoulder", plain.shoulder),
     }
     lengths = replace(plain, **{name: value for name, value in found.items() if value is not None})
     if "left_shoulder" in body.joints and "right_shoulder" in body.joints:
@@ -69,10 +72,12 @@ def _length(body: Anatomy, one: str, other: str) -> float | None:
     return float(np.mean(known)) if known else None
 
 
-def _half(body: Anatomy, joint: str) -> float | None:
+def _half(body: Anatomy, joint: str, published: float) -> float | None:
+    """Half the width between two joints; None where they are not known, or are where collar bones meet."""
     if not {f"{side}_{joint}" for side in SIDES} <= body.joints.keys():
         return None
-    return _middle(body.place(f"left_{joint}") - body.place(f"right_{joint}")) / 2
+    half = _middle(body.place(f"left_{joint}") - body.place(f"right_{joint}")) / 2
+    return half if half >= _NARROWEST * published else None
 
 
 def _middle(ways: Floats) -> float:
