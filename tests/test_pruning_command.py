@@ -10,6 +10,10 @@ import pytest
 import gmr
 from gmr.cli.commands import gmr as command
 from gmr.cli.common import finished
+from gmr.pruning.manifest import cost_of_files
+from gmr.pruning.outcomes import Score
+from gmr.pruning.part import Part
+from gmr.pruning.writing import Written
 from locomotion import Arc
 from walker import write_walkers
 
@@ -74,3 +78,14 @@ def test_a_folder_that_is_not_empty_is_found_before_the_work(folder: Path, capsy
     said = capsys.readouterr()
     assert said.err == f"gmr: {folder} is there and not empty; give a new folder for the smaller dataset\n"
     assert sorted(path.name for path in folder.iterdir()) == sorted(TWIN)
+
+
+@pytest.mark.parametrize(
+    ("held", "says"),
+    [(3, "It costs 1 of 8 trials;"), (4, "It costs no trial;"), (6, "no trial, and 2 of 8 more hold;")],
+)
+def test_what_the_files_cost_is_told_by_both_scales(held: int, says: str) -> None:
+    whole, kept, own = (Score(0.2, number, 8) for number in (4, held, 2))
+    told = cost_of_files(Written(Path(), (), Part(60.0, {}), whole, kept, own, identical=False))
+    assert says in told
+    assert told.endswith("by what is left: there 2 of 8 trials hold, where 4 did.")

@@ -8,6 +8,7 @@ together.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
@@ -79,10 +80,11 @@ class Curve:
         for point in self.points:
             if point.part.seconds <= (1 - share) * every * (1 + 1e-9):
                 return point
-        most = 1 - self.points[-1].part.seconds / every
+        most = math.floor(100 * (1 - self.points[-1].part.seconds / every) + 1e-9)
+        remedy = f"ask for {most}% at most" if most else "ask for lossless, or add clips"
         raise GmrError(
-            f"{100 * share:g}% of the seconds cannot go: at {100 * most:.0f}% there is hardly anything left "
-            "to play; ask for less"
+            f"{100 * share:g}% of the seconds cannot go: beyond {most}% there is hardly anything left to "
+            f"play; {remedy}"
         )
 
     @property

@@ -145,21 +145,36 @@ def manifest_words(of: Pruning, written: Written, motions: Mapping[str, Motion])
 
 
 def cost_of_files(written: Written) -> str:
-    """What the written files cost, in a sentence."""
+    """What the written files cost, by the scale of the whole dataset and by their own, in sentences."""
+    return f"{_cost_by_the_same_scale(written)} {_cost_by_their_own_scale(written)}"
+
+
+def _cost_by_the_same_scale(written: Written) -> str:
     if written.identical:
         return (
             "It costs nothing: with the features scaled as in the whole dataset every trial is the same, bit "
             "by bit, as was checked on these files."
         )
     lost = written.whole.held - written.kept_scale.held
-    held = f"{count(abs(lost), 'trial')} {'fewer' if lost > 0 else 'more'} of {written.whole.runs}"
+    said = f"It costs {f'{lost} of {written.whole.runs} trials' if lost > 0 else 'no trial'}"
+    if lost < 0:
+        said += f", and {-lost} of {written.whole.runs} more hold"
     change = written.kept_scale.offset - written.whole.offset
-    said = f"It costs {held if lost else 'no trial'}"
     if math.isfinite(change):
         way = "grows" if change >= 0 else "shrinks"
         far = f"{number(abs(change))} m" if abs(change) >= 0.001 else "less than a millimetre"
         said += f"; the mean distance from the path {way} by {far}"
     return said + "."
+
+
+def _cost_by_their_own_scale(written: Written) -> str:
+    """What whoever evaluates the new folder will see."""
+    held, before = written.own_scale.held, written.whole.held
+    whole = f", where {before} did" if held != before else ", too"
+    return (
+        f"An evaluation of the new folder scales the features by what is left: there {held} of "
+        f"{count(written.own_scale.runs, 'trial')} hold{whole}."
+    )
 
 
 def _row(what: str, score: Score) -> str:

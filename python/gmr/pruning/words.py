@@ -41,6 +41,8 @@ def _lossless(of: Pruning) -> str:
     clips = recordings_of(of.simulation.database)
     kept = [each.name for each in clips if left.ranges[each.name]]
     cut = [name for name in kept if left.ranges[name] != whole.ranges[name]]
+    if not cut and len(kept) == len(clips):
+        return f"No half second of the {duration(whole.seconds)} can go without a change to a trial."
     return (
         f"No trial needs {duration(whole.seconds - left.seconds)} of {duration(whole.seconds)} "
         f"({percent(1 - left.seconds / whole.seconds)}): {count(len(clips) - len(kept), 'clip')} of "
