@@ -179,15 +179,21 @@ def cells(*rows: tuple[float, float, float, float]) -> Table:
 def test_words_tell_what_repeats_and_what_cannot_be_blended() -> None:
     told = " ".join(blending_sentences(cells((1.25, 0, 6, 0.01), (1.35, 30, 2, 0.2), (1.5, 0, 0.2, 0.9))))
     assert "Dense and redundant are 6 seconds (75%" in told
-    assert "Dense but unblendable are 2 seconds (25%)" in told
-    assert "most of it at 1.4 m/s turning left by 30 degrees/s (2 seconds of 2 clips, 20 cm" in told
+    assert "Dense but unblendable are 2 seconds (25% of what is dense enough to judge)" in told
+    assert "place is turning left by 30 degrees/s at 1.35 m/s (2 seconds of 2 clips, 20 cm" in told
     assert not list(blending_sentences(cells((1.5, 0, 0.2, 0.9))))
+
+
+def test_seconds_that_count_mirrored_copies_are_said_to() -> None:
+    (told,) = blending_sentences(cells((0.05, 0, 6, 0.2)), mirrored=True)
+    assert "6 seconds (100% of what is dense enough to judge, mirrored copies counted)" in told
+    assert "Most of it in one place is standing (6 seconds of 2 clips" in told
 
 
 def test_what_fails_although_it_is_there_needs_a_take_that_leads_into_it() -> None:
     def told(held: bool, nearest: float, seconds: float = 4.0) -> list[str]:
         grid = Grid(
-            speeds=np.array([1.0]),
+            speeds=np.array([1.25]),
             turn_rates_deg=np.array([0.0, 30.0]),
             offset=np.zeros((1, 2)),
             speed_error=np.zeros((1, 2)),
@@ -198,11 +204,11 @@ def test_what_fails_although_it_is_there_needs_a_take_that_leads_into_it() -> No
             limits=Limits(),
             timed=True,
         )
-        return list(lead_in_sentences(cells((0.95, 30, 3, nearest), (1.0, 0, 9, 0.9)), grid))
+        return list(lead_in_sentences(cells((1.2, 30, 3, nearest), (1.25, 0, 9, 0.9)), grid))
 
     (sentence,) = told(held=False, nearest=0.2)
     assert (
-        "lead from other movements into 1 m/s turning left by 30 degrees/s (4 seconds of it, 20 cm"
+        "lead from other movements into 1.25 m/s turning left by 30 degrees/s (4 seconds of it, 20 cm"
         in sentence
     )
     assert not told(held=True, nearest=0.2)

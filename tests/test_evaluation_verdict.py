@@ -10,10 +10,12 @@ import pytest
 from gmr.evaluation.coverage import coverage_table
 from gmr.evaluation.result import Verdict
 from gmr.evaluation.scenario import Trial, constant_trials
+from gmr.evaluation.seen_sentences import seen_sentences
 from gmr.evaluation.transitions import transitions_of
 from gmr.evaluation.trials import trials_table
 from gmr.evaluation.usage import clips_table, play_counts, usage_table
 from gmr.evaluation.verdict import verdict
+from gmr.table import Table
 from locomotion import Arc, Gait, frames_of, walked
 
 GRID = constant_trials((1.0, 1.5, 2.0, 2.5, 3.0), (-100.0, -50.0, 0.0, 50.0, 100.0))
@@ -87,6 +89,23 @@ def test_a_dataset_of_straight_clips_is_told_so() -> None:
     )
     assert "With mirrored copies of the clips (--mirror), turns to one side are enough." in said.sentences
     assert "Every clip is played at least once." in said.sentences
+
+
+def test_clips_that_stand_are_told_so_and_not_to_go_straight() -> None:
+    said = judged({"idle.bvh": Arc(4.0, 0.02, 0.0)}, lambda speed, turn: Gait(0.02, 0.0))
+    told = next(sentence for sentence in said.sentences if sentence.startswith("The clips stand"))
+    assert told.startswith("The clips stand: 0 seconds of their 4 seconds go 0.1 m/s or more.")
+    assert "exported in place" in told
+    assert "only go straight" not in str(said)
+
+
+def test_feet_that_stand_still_slide_by_nothing() -> None:
+    slide = {"foot_slide_mm": np.array([1e-10]), "foot_slide_own_mm": np.array([0.04])}
+    jerk = {"jerk_at_jumps": np.array([0.0]), "jerk_between_jumps": np.array([1.0])}
+    which = {"scenario": np.array(["constant"]), "tracking": np.array(["time"])}
+    (told,) = seen_sentences(Table({**which, **slide, **jerk}))
+    assert told.startswith("A foot slides 0 mm while it is down")
+    assert told.endswith("own frames slide 0 mm.")
 
 
 def test_a_hole_at_one_speed_is_named() -> None:

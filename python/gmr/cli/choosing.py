@@ -5,8 +5,8 @@ from __future__ import annotations
 import functools
 import shutil
 import textwrap
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
@@ -19,7 +19,7 @@ from gmr.cli.progress import Phases
 if TYPE_CHECKING:
     from gmr.completion import Completion
     from gmr.evaluation import Evaluation
-    from gmr.formats.folder import Takes
+    from gmr.evaluation.reading import Read
     from gmr.pages.section import Section
 
 __all__ = [
@@ -32,6 +32,7 @@ __all__ = [
     "completing_options",
     "completion_summary",
     "completion_words",
+    "noticed",
     "read_clips",
 ]
 
@@ -119,20 +120,28 @@ def check_choosing(
         raise click.UsageError(f"--at-most, --made and --retarget go with {option} FOLDER.")
 
 
-def read_clips(folder: Path, threads: int | None, phases: Phases) -> Takes:
+def read_clips(folder: Path, threads: int | None, phases: Phases) -> Read:
     """All motions of a folder; one without any is an error."""
-    from gmr.errors import DatasetError
-    from gmr.formats import read_folder
+    from gmr.evaluation.reading import read_clips as read
 
-    takes = read_folder(
-        folder,
-        threads=threads,
-        errors="collect",
-        progress=lambda done, of: phases.tell(f"reading {folder.name}", done, of),
+    return read(
+        folder, threads=threads, progress=lambda done, of: phases.tell(f"reading {folder.name}", done, of)
     )
-    if not takes:
-        raise DatasetError(f"{folder} holds no motion that can be read; give the folder with the clips")
-    return takes
+
+
+def noticed(reads: Iterable[Read], excluded: Collection[str] = ()) -> tuple[str, ...]:
+    """What was odd about files, and which could not be used: not read, or ``excluded`` later."""
+    from gmr.evaluation.words import count, some_of
+
+    reads = tuple(reads)
+    notes = [note for read in reads for note in read.notes]
+    failed = [*(path for read in reads for path in read.failed), *excluded]
+    if failed:
+        verb = "was" if len(failed) == 1 else "were"
+        notes.append(
+            f"{count(len(failed), 'file')} could not be used and {verb} left out: {some_of(failed, 5)}."
+        )
+    return tuple(notes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,9 +199,10 @@ def complete_folder(
     """
     from gmr.completion import complete_from, synthesised, write_added
 
+    others = read_clips(completing.source, threads, phases)
     found = complete_from(
-        dict(read_clips(folder, threads, phases)),
-        dict(read_clips(completing.source, threads, phases)),
+        read_clips(folder, threads, phases).motions,
+        others.motions,
         source=completing.source.resolve().name,
         dataset=evaluation.dataset,
         at_most=completing.at_most,
@@ -203,6 +213,7 @@ def complete_folder(
         threads=threads,
         **reading,
     )
+    found = replace(found, noticed=noticed([others]))
     with at_place(completing.out):
         write_added(found, completing.out, source=completing.source, progress=phases.tell)
         if report and found.added:

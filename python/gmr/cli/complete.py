@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,6 +14,7 @@ from gmr.cli.choosing import (
     choosing_options,
     completion_summary,
     completion_words,
+    noticed,
     read_clips,
 )
 from gmr.cli.common import say
@@ -119,15 +121,16 @@ def complete(
         with at_place(out):
             check_place(out / "index.html")
         takes = read_clips(folder, threads, phases)
-        failed = {path: str(error) for path, error in takes.failed.items()}
+        failed = dict(takes.failed)
         if source is None:
-            found = completed(dict(takes), fill, progress=phases.tell, **settings)
+            found = completed(takes.motions, fill, progress=phases.tell, **settings)
+            found = replace(found, noticed=noticed([takes], found.before.failed))
         else:
             others = read_clips(source, threads, phases)
-            failed |= {str(source / path): str(error) for path, error in others.failed.items()}
+            failed |= {str(source / path): why for path, why in others.failed.items()}
             found = complete_from(
-                dict(takes),
-                dict(others),
+                takes.motions,
+                others.motions,
                 source=source.resolve().name,
                 at_most=at_most,
                 fill=fill if made else None,
@@ -135,6 +138,7 @@ def complete(
                 progress=phases.tell,
                 **settings,
             )
+            found = replace(found, noticed=noticed([takes, others], found.before.failed))
         with at_place(out):
             written = write_completion(found, out, source=source, progress=phases.tell)
     failed |= found.before.failed
@@ -146,4 +150,4 @@ def complete(
         click.echo("\n".join([completion_words(found), "", f"Page: {written}"]))
     for sentence in left_out(failed):
         say(sentence)
-    return 1 if failed else 0
+    return 1 if failed or found.refused else 0

@@ -181,6 +181,7 @@ def evaluate(
             progress=phases.tell,
         )
         added: dict[str, Pruned | Tuned | Completed] = {}
+        refused = False
         if prune is not None:
             assert isinstance(found, gmr.Evaluation)
             added["pruned"] = prune_folder(
@@ -200,7 +201,7 @@ def evaluate(
             added["tuned"] = tune_evaluation(found, threads=threads, progress=phases.tell)
         if completing is not None:
             assert isinstance(found, gmr.Evaluation)
-            added["completed"] = complete_folder(
+            added["completed"] = completed = complete_folder(
                 found,
                 folders[0],
                 completing,
@@ -210,6 +211,7 @@ def evaluate(
                 names=names,
                 unit=unit,
             )
+            refused = bool(completed.found.refused)
         sections = [each.section() for each in added.values()]
         written = _write(found, None if no_report else out, tables, figures, phases, sections)
     click.echo(as_object(found, written, added) if as_json else in_words(found, written))
@@ -217,7 +219,7 @@ def evaluate(
         click.echo(each.words())
     for sentence in left_out(found.failed):
         say(sentence)
-    return 1 if found.failed else 0
+    return 1 if found.failed or refused else 0
 
 
 def _evaluated(folders: Sequence[Path], **settings: Any) -> Evaluation | Comparison:

@@ -41,7 +41,8 @@ def _kinds(choices: tuple[Choice, ...]) -> str:
 
 def _in_order(choices: tuple[Choice, ...]) -> str:
     told = [
-        f"{choice.name} ({duration(choice.seconds)}, {choice.held} trials hold)" for choice in choices[:_TOLD]
+        f"{choice.name} ({duration(choice.seconds)}, {count(choice.held, 'trial holds', 'trials hold')})"
+        for choice in choices[:_TOLD]
     ]
     more = f" and {len(choices) - _TOLD} more" if len(choices) > _TOLD else ""
     return (

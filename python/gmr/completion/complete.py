@@ -51,6 +51,7 @@ class Completion:
         refused: clips that could not be chosen, and why.
         considered: how many clips could have been chosen.
         held_before: how many trials held before the first choice, with the features scaled as for choosing.
+        noticed: what was odd about the files that all this was read from, in sentences.
     """
 
     dataset: str
@@ -64,6 +65,7 @@ class Completion:
     refused: Mapping[str, str] = field(default_factory=dict)
     considered: int = 0
     held_before: int = 0
+    noticed: tuple[str, ...] = ()
 
     @cached_property
     def trials(self) -> Table:

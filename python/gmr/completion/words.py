@@ -29,6 +29,10 @@ def headline(of: Completion) -> str:
     if before.all():
         all_of_them = "the one trial" if total == 1 else f"all {total} trials"
         return f"Nothing is missing: {of.dataset} does {all_of_them} that it is asked for."
+    if of.source and not of.added and not of.considered:
+        return (
+            f"No clip of {of.source} could be tried: {of.dataset} does {int(before.sum())} of {total} trials."
+        )
     if of.source and not of.added:
         return f"Nothing in {of.source} helps: {of.dataset} does {int(before.sum())} of {total} trials."
     filled, lost = int((after & ~before).sum()), int((before & ~after).sum())
@@ -44,7 +48,7 @@ def headline(of: Completion) -> str:
 def sentences(of: Completion) -> tuple[str, ...]:
     """What stands behind the headline, in reading order."""
     how = from_folder(of) if of.source else _made(of)
-    return tuple(filter(None, (*how, _open(of), _worse(of), *_played(of))))
+    return tuple(filter(None, (*how, _open(of), _worse(of), *_played(of), *of.noticed)))
 
 
 def change_sentence(of: Completion) -> str:
@@ -80,6 +84,8 @@ def _open(of: Completion) -> str:
 
 
 def _worse(of: Completion) -> str:
+    if not of.added:
+        return ""
     before, after = _held(of, "before"), _held(of, "after")
     lost = np.flatnonzero(before & ~after)
     change = _change(of)

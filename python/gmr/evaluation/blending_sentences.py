@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gmr.evaluation.pose_coverage import REDUNDANT, THIN, UNBLENDABLE, BlendLimits
 from gmr.evaluation.regions import Grid
-from gmr.evaluation.words import count, duration, listing, percent, turning
+from gmr.evaluation.words import count, duration, going, listing, percent, turning
 from gmr.table import Table
 
 __all__ = ["blending_sentences", "lead_in_sentences"]
@@ -18,12 +18,15 @@ __all__ = ["blending_sentences", "lead_in_sentences"]
 MOST_TOLD: Final = 3
 
 
-def blending_sentences(poses: Table, limits: BlendLimits | None = None) -> Iterator[str]:
+def blending_sentences(
+    poses: Table, limits: BlendLimits | None = None, *, mirrored: bool = False
+) -> Iterator[str]:
     """Say how much of the clips repeats others, and how much of it nothing can be blended with.
 
     Args:
         poses: a table of :func:`gmr.evaluation.pose_coverage.pose_coverage`.
         limits: that it was made with.
+        mirrored: its seconds count mirrored copies, too, which is then said.
     """
     limits = limits or BlendLimits()
     judged = poses["kind"] != THIN
@@ -32,21 +35,25 @@ def blending_sentences(poses: Table, limits: BlendLimits | None = None) -> Itera
         return
     twice, apart = poses["kind"] == REDUNDANT, poses["kind"] == UNBLENDABLE
     if twice.any():
-        seconds = float(poses["seconds"][twice].sum())
         yield (
-            f"Dense and redundant are {duration(seconds)} ({percent(seconds / total)} of what is "
-            f"dense enough to judge): another clip has the same pose within {limits.redundant * 100:g} cm."
+            f"Dense and redundant {_amount(float(poses['seconds'][twice].sum()), total, mirrored)}: "
+            f"another clip has the same pose within {limits.redundant * 100:g} cm."
         )
     if apart.any():
-        seconds = float(poses["seconds"][apart].sum())
         most = int(np.argmax(np.where(apart, poses["seconds"], -1.0)))
         yield (
-            f"Dense but unblendable are {duration(seconds)} ({percent(seconds / total)}): clips that go "
-            f"alike in poses {limits.unblendable * 100:g} cm and more apart, most of it at "
-            f"{_going(float(poses['speed'][most]), float(poses['turn_rate_deg'][most]))} "
+            f"Dense but unblendable {_amount(float(poses['seconds'][apart].sum()), total, mirrored)}: "
+            f"clips that go alike in poses {limits.unblendable * 100:g} cm and more apart. Most of it in one "
+            f"place is {going(float(poses['speed'][most]), float(poses['turn_rate_deg'][most]))} "
             f"({duration(float(poses['seconds'][most]))} of {count(int(poses['clips'][most]), 'clip')}, "
             f"{poses['nearest_mean'][most] * 100:.0f} cm from the nearest pose of another)."
         )
+
+
+def _amount(seconds: float, total: float, mirrored: bool) -> str:
+    verb = "is" if duration(seconds) == "1 second" else "are"
+    copies = ", mirrored copies counted" if mirrored else ""
+    return f"{verb} {duration(seconds)} ({percent(seconds / total)} of what is dense enough to judge{copies})"
 
 
 def lead_in_sentences(poses: Table, grid: Grid, limits: BlendLimits | None = None) -> Iterator[str]:
@@ -64,7 +71,7 @@ def lead_in_sentences(poses: Table, grid: Grid, limits: BlendLimits | None = Non
     if not worst:
         return
     places = [
-        f"{_going(float(grid.speeds[v]), float(grid.turn_rates_deg[w]))} "
+        f"{_asked(float(grid.speeds[v]), float(grid.turn_rates_deg[w]))} "
         f"({duration(float(grid.seconds[v, w]))} of it, {nearest[v, w] * 100:.0f} cm from any other clip)"
         for v, w in worst
     ]
@@ -85,5 +92,5 @@ def _nearest_on_grid(poses: Table, grid: Grid) -> NDArray[np.float64]:
     return np.divide(metres, total, out=np.full(total.shape, np.nan), where=total > 0)
 
 
-def _going(speed: float, turn_rate_deg: float) -> str:
-    return f"{speed:.2g} m/s {turning(turn_rate_deg, turn_rate_deg)}"
+def _asked(speed: float, turn_rate_deg: float) -> str:
+    return f"{speed:g} m/s {turning(turn_rate_deg, turn_rate_deg)}"

@@ -129,4 +129,5 @@ def _closest(names: Sequence[str], grids: Sequence[Grid], held: NDArray[np.bool_
 
 def _amounts(evaluations: Sequence[Evaluation]) -> str:
     said = [f"{each.dataset} {duration(each.summary.seconds)}" for each in evaluations]
-    return f"How much motion they are: {listing(said)}."
+    copies = any(each.summary.mirrored_count for each in evaluations)
+    return f"How much motion they are{', mirrored copies counted' if copies else ''}: {listing(said)}."

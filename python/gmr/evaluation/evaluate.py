@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import numbers
 import os
-import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from gmr.errors import DatasetError, FormatWarning
+from gmr.errors import DatasetError
 from gmr.evaluation.elsewhere import simulated_elsewhere
 from gmr.evaluation.measured import measured
+from gmr.evaluation.reading import Read, printable, read_clips
 from gmr.evaluation.regions import Limits
 from gmr.evaluation.replay import replay_of, worst_trial
 from gmr.evaluation.replays import replays_of
@@ -33,8 +32,6 @@ from gmr.evaluation.scenarios.on_grid import OnGrid
 from gmr.evaluation.simulation import frames_of, simulated
 from gmr.evaluation.verdict import verdict
 from gmr.evaluation.words import some_of
-from gmr.formats.folder import read_folder
-from gmr.formats.registry import suffixes
 from gmr.matching.database import Database
 from gmr.matching.naming import named
 from gmr.matching.prepare import unit_text
@@ -42,9 +39,6 @@ from gmr.matching.schema import LOCOMOTION, Schema
 from gmr.matching.trial import Tracking
 from gmr.motion import Motion
 from gmr.threads import thread_count
-
-if TYPE_CHECKING:
-    from gmr.errors import GmrError
 
 __all__ = ["Source", "evaluate"]
 
@@ -137,8 +131,8 @@ def evaluate(
     asked = scenarios_of(scenarios, grid, seed)
     trials = asked_trials(asked)
     tell = progress or _silent
-    with _format_warnings() as odd:
-        dataset, motions, failed = _motions(source, thread_total, errors, tell)
+    dataset, read = _read(source, thread_total, errors, tell)
+    motions = read.motions
     tell("preparing", 0, 1)
     database = Database.build(motions, mirror=mirror, schema=schema, names=names, unit=unit)
     if database.excluded and errors == "raise":
@@ -166,7 +160,7 @@ def evaluate(
     frames = frames_of(database)
     tables = measured(dataset, simulation, frames, thread_total)
     noted = (note for scenario in asked for note in getattr(scenario, "notes", ()))
-    notes, failed = (*odd, *database.notes, *noted), failed | dict(database.excluded)
+    notes, failed = (*read.notes, *database.notes, *noted), {**read.failed, **database.excluded}
     found = Evaluation(
         dataset=dataset,
         measured=tables,
@@ -218,47 +212,21 @@ def _numbers(name: str, values: Sequence[float]) -> tuple[float, ...]:
     return found
 
 
-def _motions(
+def _read(
     source: Source, threads: int, errors: Literal["raise", "collect"], tell: Progress
-) -> tuple[str, dict[str, Motion], dict[str, str]]:
-    """The dataset's name, its motions by name, and what could not be read and why."""
+) -> tuple[str, Read]:
+    """The dataset's name, and what there is of it."""
     if not isinstance(source, str | os.PathLike):
         motions = named(source)
         if not motions:
             raise DatasetError("there is no motion to evaluate; give at least one")
-        return "motions", motions, {}
+        return "motions", Read(motions, {}, ())
 
     def read_so_far(done: int, of: int) -> None:
         tell("reading", done, of)
 
-    takes = read_folder(source, threads=threads, errors=errors, progress=read_so_far)
-    failed = {_printable(path): _printable(str(error)) for path, error in takes.failed.items()}
-    if not takes:
-        raise DatasetError(_no_motion(source, takes.failed))
-    return (
-        _printable(Path(source).resolve().name),
-        {_printable(path): take for path, take in takes.items()},
-        failed,
-    )
-
-
-def _no_motion(folder: str | os.PathLike[str], failed: Mapping[str, GmrError]) -> str:
-    if failed:
-        first = next(iter(failed.values()))
-        if len(failed) == 1:
-            return f"the only motion file of {os.fspath(folder)} could not be read: {first}"
-        return (
-            f"none of the {len(failed)} motion files of {os.fspath(folder)} could be read; the first: {first}"
-        )
-    return (
-        f"{os.fspath(folder)} holds no motion files ({some_of(suffixes(), 10)}), nor do the folders in it; "
-        "give the folder that the clips are in"
-    )
-
-
-def _printable(text: str) -> str:
-    """Text with a file's name in it: bytes that are no UTF-8 are written as escapes."""
-    return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+    read = read_clips(source, threads=threads, errors=errors, progress=read_so_far)
+    return printable(Path(source).resolve().name), read
 
 
 def _summary(
@@ -283,20 +251,6 @@ def _summary(
         unit=units + (", guessed from the length of the legs" if guessed else ""),
         settings=settings,
     )
-
-
-@contextmanager
-def _format_warnings() -> Iterator[list[str]]:
-    """Collect what readers find odd in files as sentences; other warnings go their usual way."""
-    sentences: list[str] = []
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", FormatWarning)
-        yield sentences
-    for warning in caught:
-        if issubclass(warning.category, FormatWarning):
-            sentences.append(_printable(str(warning.message)))
-        else:
-            warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
 
 
 def _silent(phase: str, done: int, of: int) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gmr.evaluation.regions import judged
 from gmr.evaluation.words import count, number
@@ -33,10 +34,15 @@ def seen_sentences(trials: Table) -> Iterator[str]:
     skating = int(np.sum(slide[known] > SKATES))
     skates = f"; it skates, by over {SKATES:g} mm, in {count(skating, 'trial')}" if skating else ""
     yield (
-        f"A foot slides {number(float(np.median(slide[known])))} mm while it is down in the median trial, "
-        f"where the clips' own frames slide {number(float(np.median(own[known])))} mm{skates}."
+        f"A foot slides {_millimetres(slide[known])} while it is down in the median trial, "
+        f"where the clips' own frames slide {_millimetres(own[known])}{skates}."
     )
     jerk = trials["jerk_at_jumps"] / trials["jerk_between_jumps"]
     times = float(np.median(jerk[np.isfinite(jerk)])) if np.isfinite(jerk).any() else 1.0
     if times >= JERKS:
         yield f"At a jump the joints jerk {number(times)} times as hard as between jumps in the median trial."
+
+
+def _millimetres(values: NDArray[np.float64]) -> str:
+    """The median; tenths of a millimetre are less than any recording tells."""
+    return f"{number(round(float(np.median(values)), 1))} mm"

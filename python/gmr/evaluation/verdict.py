@@ -20,7 +20,7 @@ from gmr.evaluation.regions import Grid, Limits, failures, held_rectangle
 from gmr.evaluation.result import Verdict
 from gmr.evaluation.scenario_sentences import scenario_sentences
 from gmr.evaluation.seen_sentences import seen_sentences
-from gmr.evaluation.words import count, duration, listing, percent, some_of, span, turning
+from gmr.evaluation.words import STANDS, count, duration, listing, percent, some_of, span, turning
 from gmr.table import Table
 
 __all__ = ["verdict", "what_counts"]
@@ -70,7 +70,7 @@ def verdict(
             *seen_sentences(trials),
             *_side_sentences(coverage, mirrored),
             *clip_sentences(clips, usage),
-            *(blending_sentences(poses) if poses is not None else ()),
+            *(blending_sentences(poses, mirrored=mirrored) if poses is not None else ()),
             *capture_sentences(grid, regions, mirrored),
             *(lead_in_sentences(poses, grid) if poses is not None else ()),
             *notes,
@@ -129,6 +129,14 @@ def _speeds(speeds: NDArray[np.float64]) -> str:
 
 def _side_sentences(coverage: Table, mirrored: bool) -> Iterator[str]:
     turn, weight = coverage["turn_rate_deg"], coverage["weight"]
+    goes = float(weight[coverage["speed"] >= STANDS].sum())
+    if goes < 1:
+        yield (
+            f"The clips stand: {duration(goes)} of their {duration(float(weight.sum()))} go {STANDS:g} m/s "
+            "or more. Where they show walking, they were exported in place: export them with the root's way "
+            "over the ground."
+        )
+        return
     left = float(weight[turn > STRAIGHT_WITHIN_DEG].sum())
     right = float(weight[turn < -STRAIGHT_WITHIN_DEG].sum())
     if left + right < 1:

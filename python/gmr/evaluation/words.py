@@ -7,10 +7,12 @@ from typing import Final
 
 __all__ = [
     "GAITS",
+    "STANDS",
     "circles",
     "count",
     "duration",
     "gait_of",
+    "going",
     "listing",
     "number",
     "percent",
@@ -22,6 +24,9 @@ __all__ = [
 FASTEST_WALK: Final = 1.75
 SLOWEST_RUN: Final = 2.25
 """Metres per second: people change from walking to running at about 2 m/s."""
+
+STANDS: Final = 0.1
+"""Metres per second below which a body is said to stand."""
 
 GAITS: Final = ("a walk", "a jog", "a run")
 
@@ -87,6 +92,13 @@ def turning(low_deg: float, high_deg: float) -> str:
         if rate
     ]
     return f"going straight and turning up to {listing(sides)}"
+
+
+def going(speed: float, turn_rate_deg: float) -> str:
+    """A movement as the rest of a sentence: "going straight at 1.4 m/s", "standing"."""
+    if speed >= STANDS:
+        return f"{turning(turn_rate_deg, turn_rate_deg)} at {speed:.3g} m/s"
+    return f"{turning(turn_rate_deg, turn_rate_deg)} on the spot" if turn_rate_deg else "standing"
 
 
 def gait_of(speed: float) -> str:

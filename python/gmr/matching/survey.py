@@ -9,19 +9,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from gmr.body.joints import Joints, find_joints
-from gmr.body.measures import Poses, leg_length, turned_upright, up_axis
+from gmr.body.measures import Poses, turned_upright, up_axis
 from gmr.errors import DatasetError
 from gmr.forest import home
-from gmr.guesses import GUESSED_UNITS, unit_of_legs
 from gmr.listing import quoted
-from gmr.matching.prepare import in_metres_upright, unit_text
+from gmr.matching.oddities import oddities
+from gmr.matching.prepare import in_metres_upright
 from gmr.matching.root import RootJoint, find_root_joint, joints_left_behind
+from gmr.matching.unit_guesses import middle, units_of
 from gmr.motion import Motion
 from gmr.skeleton import Skeleton
 from gmr.tpose import leading_rest_frames
-from gmr.units import metres_per_unit
 
 __all__ = ["Survey", "difference", "survey"]
+
+_FARTHEST = 1e9
+"""File units, or degrees, beyond which the bones of a body vanish in rounding."""
 
 _SAMPLES = 12
 """Poses of each clip that decide on joints, up axis and unit."""
@@ -88,13 +91,17 @@ def survey(
     usable, skeleton_notes = _on_one_skeleton(usable, excluded)
     notes += skeleton_notes
     notes += _short_notes(usable, shortest)
-    skeleton = next(iter(usable.values())).skeleton
     sampled = {name: motion[:: max(1, motion.frame_count // _SAMPLES)] for name, motion in usable.items()}
     poses = {name: np.asarray(motion.positions(dtype=np.float64)) for name, motion in sampled.items()}
+    skeleton = next(iter(usable.values())).skeleton
     pooled = _pooled(skeleton, poses.values())
     joints = find_joints(skeleton, pooled, names)
     up = up_axis(pooled, joints.roles)
-    units, unit_notes = _units(usable, poses, joints, unit)
+    units, unit_notes = units_of(usable, poses, joints, unit, excluded)
+    usable, sampled = ({name: of[name] for name in units} for of in (usable, sampled))
+    poses = {name: poses[name] for name in units}
+    skeleton = next(iter(usable.values())).skeleton
+    notes += oddities(usable, poses, joints.roles, up)
     upright = [turned_upright(clip * units[name], up) for name, clip in poses.items()]
     clips = (in_metres_upright(motion, units[name], up) for name, motion in sampled.items())
     root = find_root_joint(skeleton, joints, upright, clips)
@@ -141,6 +148,9 @@ def _unusable(motion: Motion) -> str | None:
         return "it is a pose, not a movement: a clip has at least 2 frames"
     if not all(np.isfinite(values).all() for values in motion.source.numbers):
         return "it holds numbers that are not finite"
+    largest = max(float(np.abs(values).max(initial=0.0)) for values in motion.source.numbers)
+    if largest > _FARTHEST:
+        return f"it holds a number as large as {largest:.3g}, where no body can be; mend the file"
     return None
 
 
@@ -174,8 +184,9 @@ def _without_tposes(
     skipped = {name: frames for name, frames in skipped.items() if frames}
     if not skipped:
         return motions, {}, []
+    verb = "begins" if len(motions) == 1 else "begin"
     note = (
-        f"{len(skipped)} of {len(motions)} clips begin with a T-pose that a converter added (whole-number "
+        f"{len(skipped)} of {len(motions)} clips {verb} with a T-pose that a converter added (whole-number "
         f"angles, then a jump of the whole body); it was left out ({quoted(skipped, 3)})."
     )
     return {name: motion[skipped.get(name, 0) :] for name, motion in motions.items()}, skipped, [note]
@@ -239,52 +250,10 @@ def _pooled(skeleton: Skeleton, poses: Iterable[Poses]) -> Poses:
     return np.concatenate(scaled)
 
 
-def _units(
-    motions: Mapping[str, Motion],
-    poses: Mapping[str, Poses],
-    joints: Joints,
-    unit: float | str | None,
-) -> tuple[dict[str, float], list[str]]:
-    """Metres per file unit of each clip: what it says, else what the caller says, else a guess, which is
-    noted.
-
-    Raises:
-        DatasetError: in no known unit a clip's body has a human's legs.
-    """
-    given = None if unit is None else metres_per_unit(unit)
-    units: dict[str, float] = {}
-    guesses: dict[float, list[tuple[str, float]]] = {}
-    for name, motion in motions.items():
-        known = motion.unit or given
-        if known is None:
-            leg = leg_length(motion.skeleton, poses[name], joints.roles)
-            guess = unit_of_legs(leg)
-            if guess is None:
-                raise DatasetError(
-                    f"'{name}': a leg of {leg:.4g} file units is a human's in none of "
-                    f"{', '.join(GUESSED_UNITS)}; say how many metres a file unit is: unit=..."
-                )
-            known = guess.metres
-            guesses.setdefault(known, []).append((name, guess.body_metres))
-        units[name] = known
-    notes = [
-        f"Unit guessed from the length of the legs: {unit_text(metres)}, which makes the body about "
-        f"{_middle([stature for _, stature in clips]):.2f} m tall"
-        + (f" (for {quoted([name for name, _ in clips], 5)})" if len(guesses) > 1 else "")
-        + "; say unit=... if it is another."
-        for metres, clips in guesses.items()
-    ]
-    return units, notes
-
-
 def _floor(upright: Iterable[Poses]) -> float:
     """Height on which the lowest joints stand in the middle one of the clips; 0 where it is about 0."""
     heights = [float(np.sort(clip[:, :, 1].min(axis=1))[len(clip) // 10]) for clip in upright]
-    return _middle(heights) if abs(_middle(heights)) > _ABOUT_GROUND else 0.0
-
-
-def _middle(values: list[float]) -> float:
-    return sorted(values)[len(values) // 2]
+    return middle(heights) if abs(middle(heights)) > _ABOUT_GROUND else 0.0
 
 
 def _joint_notes(skeleton: Skeleton, joints: Joints, root: RootJoint | None) -> list[str]:

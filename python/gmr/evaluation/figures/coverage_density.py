@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 from gmr.evaluation.coverage import Bins, Density, density
 from gmr.evaluation.figures.axes import TURN_RATE, cell_axes
 from gmr.evaluation.figures.classes import Classes
-from gmr.evaluation.figures.wording import asked
 from gmr.evaluation.regions import Grid, Limits
 from gmr.evaluation.result import Evaluation
-from gmr.evaluation.words import count, duration, listing, percent
+from gmr.evaluation.words import count, duration, going, listing, percent
 from gmr.pages.figure import Figure
 from gmr.pages.theme import turn_ticks
 from gmr.table import Table
@@ -89,7 +88,7 @@ def _sentence(cells: Table, pairs: Table, outside: float, limit: float) -> str:
         f"Of the {count(len(pairs), 'pair')} of speed and turn rate asked for (the crosses), "
         f"{int(held.sum())} have a second or more of motion, going forward, within half a step of the grid.",
         "" if held.all() else _gap(pairs, ~held),
-        f"Most time is spent at {asked(float(cells['speed'][best]), float(cells['turn_rate_deg'][best]))}.",
+        f"Most time is spent {going(float(cells['speed'][best]), float(cells['turn_rate_deg'][best]))}.",
         _balance(cells),
         f"{duration(outside)} of turning faster than {limit:.0f} degrees/s are not drawn."
         if outside >= 1

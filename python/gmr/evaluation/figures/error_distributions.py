@@ -34,10 +34,10 @@ def error_distributions(evaluation: Evaluation) -> list[Figure]:
     scenario, tracking = set_drawn(evaluation)
     bins = of_set(evaluation.measured.error_bins, scenario, tracking)
     fits = of_set(evaluation.measured.error_fits, scenario, tracking)
-    return [_figure(bins, fits, quantity) for quantity in _NAMES]
+    return [_figure(bins, fits, quantity, scenario) for quantity in _NAMES]
 
 
-def _figure(bins: Table, fits: Table, quantity: str) -> Figure:
+def _figure(bins: Table, fits: Table, quantity: str, scenario: str) -> Figure:
     name, words, unit = _NAMES[quantity]
     bins, fits = (table.take(table["error_of"] == quantity) for table in (bins, fits))
     pairs = pairs_of(fits)
@@ -45,7 +45,7 @@ def _figure(bins: Table, fits: Table, quantity: str) -> Figure:
     return Figure(
         name=name,
         title=f"Error of the {words} in a trial, and the normal distributions that fit it",
-        sentence=_sentence(fits, words, unit),
+        sentence=_sentence(fits, words, unit, switching=scenario == "switching"),
         chart=_chart(choice(pairs, *_SHOWN), f"Played minus asked for, {unit}"),
         data={
             "bars": Table({"trial": numbered(bins, pairs), **bars}),
@@ -77,9 +77,10 @@ def _curves(fits: Table, width: float) -> Table:
     )
 
 
-def _sentence(fits: Table, words: str, unit: str) -> str:
+def _sentence(fits: Table, words: str, unit: str, *, switching: bool) -> str:
     two = fits.take(fits["components"] == 2)
-    told = f"In {len(two)} of {count(len(fits), 'trial')} the errors of the {words} have two centres"
+    trials = count(len(fits), "switching trial" if switching else "trial")
+    told = f"In {len(two)} of {trials} the errors of the {words} have two centres"
     if len(two) == 0:
         centre = float(np.nanmean(fits["mean_1"])) if np.isfinite(fits["mean_1"]).any() else 0.0
         return f"{told}; elsewhere one, {_signed(centre)} {unit} in the mean of the trials."

@@ -41,7 +41,7 @@ def comparison_page(comparison: Comparison) -> str:
         facts={
             "Datasets": f"{len(evaluations):,}",
             "Clips": f"{sum(each.summary.clip_count for each in evaluations):,}",
-            "Duration": duration(sum(each.summary.seconds for each in evaluations)),
+            _duration_of(evaluations): duration(sum(each.summary.seconds for each in evaluations)),
             "Trials each": f"{len(evaluations[0].measured.trials):,}",
         },
         sections=comparison_sections(comparison, drawn, tables),
@@ -52,6 +52,10 @@ def comparison_page(comparison: Comparison) -> str:
         without_scripts="the charts and the moving skeleton need JavaScript, which is off in this browser",
         wide=True,
     ).html()
+
+
+def _duration_of(evaluations: tuple[Evaluation, ...]) -> str:
+    return f"Duration{' with copies' if any(each.summary.mirrored_count for each in evaluations) else ''}"
 
 
 def _together(evaluations: tuple[Evaluation, ...], made: Callable[[Evaluation], Table]) -> Table:

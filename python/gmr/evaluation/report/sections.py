@@ -39,7 +39,7 @@ def facts(summary: Summary) -> dict[str, str]:
     return {
         "Clips": f"{summary.clip_count:,}",
         **mirrored,
-        "Duration": duration(summary.seconds),
+        "Duration with copies" if mirrored else "Duration": duration(summary.seconds),
         f"Frames at {summary.rate:g} Hz": f"{summary.frame_count:,}",
         "Joints": f"{summary.joint_count:,}",
     }

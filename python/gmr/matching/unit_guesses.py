@@ -1,0 +1,66 @@
+"""Metres per file unit of the clips of a dataset: what they say, or what their legs tell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from gmr.body.joints import Joints
+from gmr.body.measures import Poses, leg_length
+from gmr.errors import DatasetError
+from gmr.guesses import GUESSED_UNITS, unit_of_legs
+from gmr.listing import quoted
+from gmr.matching.prepare import unit_text
+from gmr.motion import Motion
+from gmr.units import metres_per_unit
+
+__all__ = ["middle", "units_of"]
+
+
+def units_of(
+    motions: Mapping[str, Motion],
+    poses: Mapping[str, Poses],
+    joints: Joints,
+    unit: float | str | None,
+    excluded: dict[str, str],
+) -> tuple[dict[str, float], list[str]]:
+    """Metres per file unit of each clip: what it says, else what the caller says, else a guess, which is
+    noted.
+
+    Clips whose body has a human's legs in no known unit join ``excluded``.
+
+    Raises:
+        DatasetError: all of them do.
+    """
+    given = None if unit is None else metres_per_unit(unit)
+    units: dict[str, float] = {}
+    guesses: dict[float, list[tuple[str, float]]] = {}
+    for name, motion in motions.items():
+        known = motion.unit or given
+        if known is None:
+            leg = leg_length(motion.skeleton, poses[name], joints.roles)
+            guess = unit_of_legs(leg)
+            if guess is None:
+                excluded[name] = (
+                    f"a leg of {leg:.4g} file units is a human's in none of {', '.join(GUESSED_UNITS)}; say "
+                    "how many metres a file unit is: --unit on the command line, unit=... in Python"
+                )
+                continue
+            known = guess.metres
+            guesses.setdefault(known, []).append((name, guess.body_metres))
+        units[name] = known
+    if not units:
+        name = next(iter(motions))
+        raise DatasetError(f"'{name}': {excluded[name]}")
+    notes = [
+        f"Unit guessed from the length of the legs: {unit_text(metres)}, which makes the body about "
+        f"{middle([stature for _, stature in clips]):.2f} m tall"
+        + (f" (for {quoted([name for name, _ in clips], 5)})" if len(guesses) > 1 else "")
+        + "; if it is another, say --unit (unit=... in Python)."
+        for metres, clips in guesses.items()
+    ]
+    return units, notes
+
+
+def middle(values: list[float]) -> float:
+    """The middle one of some values; of an even number, the upper one of both."""
+    return sorted(values)[len(values) // 2]

@@ -1,0 +1,235 @@
+"""Datasets as people have them: what is odd is taken and told, or refused with what helps."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gmr.cli.commands import gmr as command
+from gmr.cli.common import finished
+from locomotion import Arc
+from walker import walker_bvh
+
+SMALL = ("--speeds", "1", "--turn-rates", "0", "--quiet")
+WALK = walker_bvh(Arc(4.0, 1.0))
+TURN = walker_bvh(Arc(4.0, 1.2, 40.0))
+
+Captured = pytest.CaptureFixture[str]
+
+
+def changed(text: str, change: Callable[[np.ndarray[tuple[int, int], np.dtype[np.float64]]], object]) -> str:
+    """The file with other numbers in its frames."""
+    head, times, rows = re.split(r"(MOTION\n.*\n.*\n)", text)
+    numbers = np.array([line.split() for line in rows.splitlines()], np.float64)
+    change(numbers)
+    return head + times + "\n".join(" ".join(f"{value:.6f}" for value in row) for row in numbers) + "\n"
+
+
+def z_up(text: str) -> str:
+    """The world turned by 90 degrees about x."""
+
+    def turn(rows: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> None:
+        rows[:, [1, 2]] = np.stack([-rows[:, 2], rows[:, 1]], axis=1)
+        rows[:, [3, 4]] = np.stack([np.full(len(rows), 90.0), rows[:, 3]], axis=1)
+
+    text = text.replace(
+        "Zposition Yrotation Xrotation Zrotation", "Zposition Xrotation Yrotation Zrotation", 1
+    )
+    return changed(text, turn)
+
+
+def in_metres(text: str) -> str:
+    """The file in metres, which does not say so."""
+
+    def offsets(match: re.Match[str]) -> str:
+        return "OFFSET " + " ".join(f"{float(value) / 100:g}" for value in match[1].split())
+
+    def places(rows: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> None:
+        rows[:, :3] /= 100
+
+    return changed(re.sub(r"OFFSET (.*)", offsets, text), places)
+
+
+def in_place(text: str) -> str:
+    """The root stays where it is."""
+
+    def stay(rows: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> None:
+        rows[:, [0, 2]] = 0
+
+    return changed(text, stay)
+
+
+def anonymous(text: str) -> str:
+    """Joints that no map knows."""
+    numbers: dict[str, int] = {}
+    return re.sub(
+        r"(ROOT|JOINT) (\S+)", lambda found: f"{found[1]} b{numbers.setdefault(found[2], len(numbers))}", text
+    )
+
+
+def far_away(text: str) -> str:
+    """A root so far out that its bones vanish in rounding."""
+
+    def move(rows: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> None:
+        rows[:, 0] = 1e30
+
+    return changed(text, move)
+
+
+TAKEN = {
+    "one clip": ({"walk": WALK}, "All of the time is played from the one clip, walk.bvh."),
+    "the same clip again": (
+        {"walk": WALK, "copy": WALK, "again": WALK},
+        "2 clips hold the same motion as another ('copy.bvh' as 'again.bvh' and 1 more): seconds that add no",
+    ),
+    "rates that differ": (
+        {"a": walker_bvh(Arc(4.0, 1.0), 24.0), "b": walker_bvh(Arc(4.0, 1.0), 120.0), "c": WALK},
+        "The clips were recorded at 24, 30 and 120 frames per second; all were brought to one rate.",
+    ),
+    "standing": (
+        {"idle": walker_bvh(Arc(4.0, 0.0))},
+        "The clips stand: 0 seconds of their 4 seconds go 0.1 m/s",
+    ),
+    "exported in place": (
+        {"walk": in_place(WALK)},
+        "they were exported in place: export them with the root's",
+    ),
+    "z up": ({"walk": z_up(WALK), "turn": z_up(TURN)}, "The files have +Z up; they were turned to +Y."),
+    "one file with z up": (
+        {"walk": WALK, "turn": TURN, "odd": z_up(WALK)},
+        "In 1 of 3 clips ('odd.bvh') the hips do not lie above the feet along +Y as in the others",
+    ),
+    "metres and centimetres": (
+        {"walk": WALK, "turn": in_metres(TURN)},
+        "(for 'turn.bvh'); if it is another, say --unit (unit=... in Python).",
+    ),
+    "unknown names": (
+        {"walk": anonymous(WALK)},
+        "The joints' names are not known; the body's shape gave hips 'b0'",
+    ),
+    "a clip shorter than the path ahead": (
+        {"walk": WALK, "step": walker_bvh(Arc(0.5, 1.0))},
+        "but never matched: 1 of 2 clips ('step.bvh').",
+    ),
+    "a file cut off": (
+        {"walk": WALK, "cut": TURN[: TURN.rindex(" ", 0, -200)]},
+        "the frame is left out. Export the file again for the rest.",
+    ),
+}
+
+LEFT_OUT = {
+    "a number that is none": (
+        re.sub(r"\b9[34]\.\d+", "nan", WALK, count=1),
+        "'nan' stands for no number",
+    ),
+    "another skeleton": (WALK.replace("JOINT Head", "JOINT Kopf"), "another skeleton than that of the clips"),
+    "no unit fits": (in_metres(in_metres(in_metres(WALK))), "say how many metres a file unit is: --unit"),
+    "farther than a body can be": (
+        far_away(WALK),
+        "it holds a number as large as 1e+30, where no body can be",
+    ),
+    "no frames": (re.sub(r"Frames: .*\n(.*\n)[^$]*", r"Frames: 0\n\1", WALK), "it is a pose, not a movement"),
+}
+
+REFUSED = {
+    "an empty folder": ({}, "holds no motion files (.bvh"),
+    "only a broken file": ({"odd": "HIERARCHY\n"}, "the only motion file of"),
+    "only short clips": ({"step": walker_bvh(Arc(0.5, 1.0))}, "Give longer takes"),
+}
+
+
+def folder_of(folder: Path, files: dict[str, str]) -> Path:
+    folder.mkdir()
+    for name, text in files.items():
+        (folder / f"{name}.bvh").write_text(text)
+    return folder
+
+
+def told(text: str) -> str:
+    return " ".join(text.split())
+
+
+@pytest.mark.parametrize("case", TAKEN)
+def test_what_is_odd_is_taken_and_told_on_the_terminal_and_in_the_report(
+    tmp_path: Path, capsys: Captured, case: str
+) -> None:
+    files, says = TAKEN[case]
+    folder, report = folder_of(tmp_path / "takes", files), tmp_path / "report.html"
+    assert (
+        finished(command, ["evaluate", str(folder), *SMALL, "--scenario", "constant", "-o", str(report)]) == 0
+    )
+    said = capsys.readouterr()
+    assert says in told(said.out)
+    assert said.err == ""
+    assert says in told(report.read_text().replace("&#x27;", "'"))
+
+
+@pytest.mark.parametrize("case", LEFT_OUT)
+@pytest.mark.parametrize("subcommand", ["evaluate", "complete"])
+def test_one_bad_file_among_good_ones_is_left_out_and_named(
+    tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch, case: str, subcommand: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    odd, why = LEFT_OUT[case]
+    folder = folder_of(tmp_path / "takes", {"walk": WALK, "turn": TURN, "odd": odd})
+    assert finished(command, [subcommand, str(folder), *SMALL]) == 1
+    said = capsys.readouterr()
+    assert "1 file could not be used and was left out: odd.bvh." in told(said.out)
+    assert why in said.err
+    assert said.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("case", REFUSED)
+@pytest.mark.parametrize(
+    "arguments", [("evaluate",), ("evaluate", "--prune", "30%"), ("evaluate", "--tune"), ("complete",)]
+)
+def test_what_cannot_be_evaluated_is_one_sentence_whatever_is_asked(
+    tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch, case: str, arguments: tuple[str, ...]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    files, says = REFUSED[case]
+    folder = folder_of(tmp_path / "takes", files)
+    first, *others = arguments
+    assert finished(command, [first, str(folder), *SMALL, *others]) == 1
+    said = capsys.readouterr()
+    assert says in said.err
+    assert said.err.count("\n") == 1
+    assert said.out == ""
+
+
+def test_the_remedy_for_too_much_pruning_helps(tmp_path: Path, capsys: Captured) -> None:
+    folder, out = folder_of(tmp_path / "takes", {"walk": WALK}), tmp_path / "smaller"
+    run = ["evaluate", str(folder), *SMALL, "--no-report", "--prune-out", str(out), "--prune"]
+    assert finished(command, [*run, "99%"]) == 1
+    said = capsys.readouterr().err
+    most = re.search(r"ask for (\d+%|lossless)", said)
+    assert most is not None, said
+    assert finished(command, [*run, most[1]]) == 0
+
+
+def test_notes_of_files_are_told_of_a_completion_too(
+    tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    files, says = TAKEN["a file cut off"]
+    assert finished(command, ["complete", str(folder_of(tmp_path / "takes", files)), *SMALL]) == 0
+    said = capsys.readouterr()
+    assert says in told(said.out)
+    assert said.err == ""
+    assert says in told((tmp_path / "completed" / "index.html").read_text())
+
+
+def test_clips_of_which_none_could_be_tried_are_not_said_to_be_of_no_help(
+    tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    folder = folder_of(tmp_path / "takes", {"turn": TURN})
+    other = folder_of(tmp_path / "archive", {"walk": WALK.replace("JOINT Head", "JOINT Kopf")})
+    assert finished(command, ["complete", str(folder), "--from", str(other), *SMALL]) == 1
+    said = told(capsys.readouterr().out)
+    assert said.startswith("No clip of archive could be tried: takes does 0 of 1 trials.")
+    assert "it can be laid on the dataset's by --retarget" in said
