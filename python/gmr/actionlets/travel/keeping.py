@@ -18,7 +18,7 @@ from gmr.actionlets.travel.leg import leg_angles, placed, toe_leg_angles
 from gmr.actionlets.travel.limits import MARGIN, near, squashed
 from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.sole import pitch_of
-from gmr.actionlets.travel.turns import seen_from, times, turned_back
+from gmr.actionlets.travel.turns import picked, seen_from, times, turned_back
 
 __all__ = ["kept_in_range"]
 
@@ -59,7 +59,9 @@ def kept_in_range(
     if not len(rows):
         return angles
     found = angles.copy()
-    stood = _Stood(one, frames[rows], angles[rows, _ROTATION], pelvis[rows], root[rows], heading[rows])
+    stood = _Stood(
+        one, frames[rows], angles[rows, _ROTATION], picked(pelvis, rows), root[rows], heading[rows]
+    )
     found[rows] = stood.led(angles[rows])
     return found
 
@@ -100,6 +102,11 @@ class _Stood:
         end, foot = self.one.planted(self.heading, pitch, roll, self.rows)
         return leg_angles(self.one.leg, self._way(end), self.rotation, seen_from(self.pelvis, foot))
 
+    def _hip(self, pitch: Floats, roll: Floats) -> Floats:
+        """(m,) its hip's flexion alone."""
+        end, _ = self.one.planted(self.heading, pitch, roll, self.rows)
+        return leg_angles(self.one.leg, self._way(end), self.rotation, None)[:, _HIP]
+
     def _way(self, end: Floats) -> Floats:
         """(m, 3) a place in the world in the frame of the pelvis."""
         way = end - self.root
@@ -120,9 +127,7 @@ class _Stood:
     def _raised(self, roll: Floats, found: Floats, wanted: Floats) -> tuple[Floats, Floats]:
         """Pitch of feet with which the hips extend as wanted."""
         pitch = self.one.pitch[self.rows]
-        rise = _secant(
-            lambda raised: self._angles(pitch - raised, roll)[:, _HIP], wanted, found[:, _HIP], _RISES
-        )
+        rise = _secant(lambda raised: self._hip(pitch - raised, roll), wanted, found[:, _HIP], _RISES)
         return pitch - rise, self._angles(pitch - rise, roll)
 
     def _bent(self, pitch: Floats, ankle: Floats) -> Floats:
@@ -151,7 +156,7 @@ class _Stood:
             self.one,
             self.rows[which],
             self.rotation[which],
-            self.pelvis[which],
+            picked(self.pelvis, which),
             self.root[which],
             self.heading[which],
         )

@@ -150,7 +150,8 @@ def leg_angles(leg: Leg, ankle: Floats, rotation: Floats, foot: Floats | None) -
         leg: the leg.
         ankle: (F, 3) in the frame of the pelvis. Where it is too far, the leg nearly straightens towards it.
         rotation: (F,) the hip's rotation in radians.
-        foot: (F, 3, 3) wanted turn of the foot in the frame of the pelvis; None for a rigid ankle.
+        foot: (F, 3, 3) wanted turn of the foot in the frame of the pelvis; None for a rigid ankle, or where
+            the ankle is not asked for.
 
     Returns:
         (F, 7) hip flexion, abduction, rotation, knee, ankle flexion, inversion, rotation; (F, 4) without

@@ -15,7 +15,7 @@ from gmr.actionlets.travel.path import level
 from gmr.actionlets.travel.rocking import Rocking
 from gmr.actionlets.travel.sole import yaw_of
 from gmr.actionlets.travel.swinging import cleared, led_over
-from gmr.actionlets.travel.turns import dots, seen_from, turned, turned_back
+from gmr.actionlets.travel.turns import dots, picked, seen_from, turned, turned_back
 
 __all__ = ["stepped"]
 
@@ -58,26 +58,28 @@ def stepped(
     for stood in both:
         one = stood.one
         columns, limits = one.leg.columns, one.leg.limits
-        plan = planned[:, columns]
-        offsets = np.zeros_like(plan)
+        plan = planned.T[columns].T
+        legs, offsets = plan.copy(order="K"), np.zeros_like(plan)
         rows = np.arange(len(one.frames)) if wanted is None else one.edges()
         on = one.frames[rows]
         if len(on):
+            above = picked(pelvis, on), root[on], heading[on]
             if isinstance(stood, Rocking):
-                legs = stood.angles(rows, pelvis[on], root[on], heading[on])
+                standing = stood.angles(rows, *above)
             else:
-                legs = _on_ground(stood, rows, plan[on], pelvis[on], root[on], heading[on])
-                legs = kept_in_range(one, rows, legs, pelvis[on], root[on], heading[on])
-            found[on[:, None], columns] = legs
-            offsets[on] = unsquashed(legs, *limits) - plan[on]
+                standing = _on_ground(stood, rows, picked(plan, on), *above)
+                standing = kept_in_range(one, rows, standing, *above)
+            legs[on] = standing
+            offsets[on] = unsquashed(standing, *limits) - picked(plan, on)
         if len(one.air.frames):
             led_over(offsets, one.air, fps)
-            some = np.ones(len(one.air.frames), bool) if wanted is None else wanted[one.air.frames]
+            some: slice | NDArray[np.bool_] = slice(None) if wanted is None else wanted[one.air.frames]
             air = one.air.frames[some]
-            free = plan[air] + offsets[air]
+            free = picked(plan, air) + picked(offsets, air)
             for _ in range(lifts):
-                legs = _swung(one.leg, free, one.air.rise[some], pelvis[air], root[air])
-            found[air[:, None], columns] = legs
+                swung = _swung(one.leg, free, one.air.rise[some], picked(pelvis, air), root[air])
+            legs[air] = swung
+        found[:, columns] = legs
     return found
 
 
@@ -101,8 +103,8 @@ def _swung(leg: Leg, free: Floats, rise: Floats, pelvis: Floats, root: Floats) -
     low = np.flatnonzero(lift > 0)
     if len(low):
         way = foot.ankle[low] + lift[low, None] * up[low]
-        foot_kept = None if leg.rigid else foot.foot[low]
-        more = leg_angles(leg, way, angles[low, _HIP_ROTATION], foot_kept) - angles[low]
+        foot_kept = None if leg.rigid else picked(foot.foot, low)
+        more = leg_angles(leg, way, angles[low, _HIP_ROTATION], foot_kept) - picked(angles, low)
         free[low] += more
         angles[low] = squashed(free[low], *leg.limits)
     return angles
@@ -113,11 +115,11 @@ def _on_ground(
 ) -> Floats:
     """(m, K) angles of a leg that stands on its footprints, in some of its frames on the ground."""
     one, leg = stood.one, stood.one.leg
-    foot = stood.foot[rows]
+    foot = picked(stood.foot, rows)
     way = stood.end[rows] - root
     way[:, ::2] = level(way[:, ::2], -heading)
     way = turned_back(pelvis, way)
-    yaw = yaw_of(foot) - yaw_of(one.nominal.foot[one.frames[rows]])
+    yaw = yaw_of(foot) - yaw_of(picked(one.nominal.foot, one.frames[rows]))
     rotation = planned[:, _HIP_ROTATION] + leg.hip_signs[2] * _LEG_TURNS * yaw
     low, high = leg.limits
     rotation = squashed(rotation, low[_HIP_ROTATION], high[_HIP_ROTATION])

@@ -16,6 +16,7 @@ __all__ = [
     "angles_of",
     "bent",
     "dots",
+    "picked",
     "pitched",
     "product",
     "seen_from",
@@ -103,6 +104,12 @@ def turned(matrix: Floats, vector: Floats) -> Floats:
 def turned_back(matrix: Floats, vector: Floats) -> Floats:
     """(F, 3) vectors ``M^T v`` of (F, 3) vectors."""
     found: Floats = np.einsum("fji,fj->fi", np.asfortranarray(matrix), np.asfortranarray(vector))
+    return found
+
+
+def picked(values: Floats, frames: NDArray[np.intp]) -> Floats:
+    """(m, ...) some of (F, ...) frames."""
+    found: Floats = values.T.take(frames, axis=-1).T
     return found
 
 
