@@ -130,6 +130,16 @@ def test_a_speed_that_is_held_without_a_clip_of_it_is_named() -> None:
     )
 
 
+def test_turns_that_hold_without_a_clip_of_them_are_named() -> None:
+    lacking = ("2.5_50.bvh", "3_50.bvh", "1_-100.bvh")
+    said = judged({name: arc for name, arc in EVERYTHING.items() if name not in lacking})
+    assert (
+        "3 of the 25 trials that it does are turns of which the clips hold less than 1 second (2 of them "
+        "turning left by 50 degrees/s at 2.5 to 3 m/s): it puts them together from pieces of other movements."
+    ) in said.sentences
+    assert "puts them together" not in str(judged(EVERYTHING))
+
+
 def test_what_only_one_side_lacks_is_named_with_its_side() -> None:
     left_only = {name: arc for name, arc in EVERYTHING.items() if arc.turn_rate_deg >= 0}
     said = judged(left_only, lambda speed, turn: Gait(speed, max(turn, 0.0)))

@@ -7,6 +7,7 @@ next. Every sentence is computed and carries its figures; the limits it speaks o
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -64,6 +65,7 @@ def verdict(
         (
             what_counts(grid),
             *_straight_sentences(grid),
+            *_bridged_turns(grid),
             *failure_sentences(grid, regions),
             *scenario_sentences(trials, coverage, segments, grid.limits),
             *path_sentences(trials, coverage, grid.limits),
@@ -121,6 +123,22 @@ def _straight_sentences(grid: Grid) -> Iterator[str]:
             f"It keeps {_speeds(bridged)} m/s straight ahead only by switching between slower and faster "
             f"clips: they hold less than {duration(grid.limits.covered)} of such movement."
         )
+
+
+def _bridged_turns(grid: Grid) -> Iterator[str]:
+    """Turns that hold although the clips hardly have them."""
+    bridged = grid.held & (grid.seconds < grid.limits.covered) & (grid.turn_rates_deg != 0)
+    block = held_rectangle(replace(grid, held=bridged))
+    if block is None:
+        return
+    number = int(bridged.sum())
+    among = "" if block.trials == number else f"{block.trials} of them "
+    yield (
+        f"{number} of the {count(int(grid.held.sum()), 'trial')} that it does "
+        f"{'is a turn' if number == 1 else 'are turns'} of which the clips hold less than "
+        f"{duration(grid.limits.covered)} ({among}{turning(*block.turn_rates_deg)} at "
+        f"{span(*block.speeds, 'm/s')}): it puts them together from pieces of other movements."
+    )
 
 
 def _speeds(speeds: NDArray[np.float64]) -> str:
