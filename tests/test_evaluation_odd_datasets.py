@@ -201,6 +201,15 @@ def test_what_cannot_be_evaluated_is_one_sentence_whatever_is_asked(
     assert said.out == ""
 
 
+def test_a_unit_that_makes_dwarfs_of_some_clips_is_told(tmp_path: Path, capsys: Captured) -> None:
+    folder = folder_of(tmp_path / "takes", {"walk": WALK, "turn": in_metres(TURN)})
+    assert finished(command, ["evaluate", str(folder), *SMALL, "--no-report", "--unit", "cm"]) == 0
+    said = told(capsys.readouterr().out)
+    assert (
+        "the body of 1 of 2 clips ('turn.bvh') about 0.017 m tall: give another, or none, and it is" in said
+    )
+
+
 def test_the_remedy_for_too_much_pruning_helps(tmp_path: Path, capsys: Captured) -> None:
     folder, out = folder_of(tmp_path / "takes", {"walk": WALK}), tmp_path / "smaller"
     run = ["evaluate", str(folder), *SMALL, "--no-report", "--prune-out", str(out), "--prune"]

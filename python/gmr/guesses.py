@@ -31,7 +31,7 @@ _SAMPLES = 200
 _SHORTEST, _TALLEST = 1.0, 2.4
 """Metres between which a standing human is looked for, child to giant."""
 _USUAL = 1.7
-_STATURE_PER_LEG = 1 / 0.491
+STATURE_PER_LEG = 1 / 0.491
 """Stature over the length of thigh and shin. Source: Winter, "Biomechanics and Motor Control of Human
 Movement", segment lengths after Drillis and Contini: 0.245 and 0.246 of the stature."""
 
@@ -102,7 +102,7 @@ def guess_body(motion: Motion) -> BodyGuess:
 def unit_of_legs(leg: float) -> UnitGuess | None:
     """The unit with which legs of ``leg`` file units, hip to ankle, are nearest to a usual human's; None
     where they are a human's in none of :data:`GUESSED_UNITS`."""
-    return _unit(leg * _STATURE_PER_LEG, "legs")
+    return _unit(leg * STATURE_PER_LEG, "legs")
 
 
 def _roles(skeleton: Skeleton, positions: NDArray[Any]) -> Mapping[str, int] | None:

@@ -7,13 +7,16 @@ from collections.abc import Mapping
 from gmr.body.joints import Joints
 from gmr.body.measures import Poses, leg_length
 from gmr.errors import DatasetError
-from gmr.guesses import GUESSED_UNITS, unit_of_legs
+from gmr.guesses import GUESSED_UNITS, STATURE_PER_LEG, unit_of_legs
 from gmr.listing import quoted
 from gmr.matching.prepare import unit_text
 from gmr.motion import Motion
 from gmr.units import metres_per_unit
 
 __all__ = ["middle", "units_of"]
+
+_BODIES = (0.5, 3.0)
+"""Metres of stature outside which a unit that was given is said to be odd."""
 
 
 def units_of(
@@ -33,11 +36,16 @@ def units_of(
     """
     given = None if unit is None else metres_per_unit(unit)
     units: dict[str, float] = {}
+    odd: dict[str, float] = {}
     guesses: dict[float, list[tuple[str, float]]] = {}
     for name, motion in motions.items():
         known = motion.unit or given
-        if known is None:
-            leg = leg_length(motion.skeleton, poses[name], joints.roles)
+        leg = leg_length(motion.skeleton, poses[name], joints.roles)
+        if known is not None:
+            stature = STATURE_PER_LEG * leg * known
+            if not _BODIES[0] <= stature <= _BODIES[1]:
+                odd[name] = stature
+        else:
             guess = unit_of_legs(leg)
             if guess is None:
                 excluded[name] = (
@@ -58,6 +66,12 @@ def units_of(
         + "; if it is another, say --unit (unit=... in Python)."
         for metres, clips in guesses.items()
     ]
+    if odd:
+        notes.append(
+            f"The unit that was given makes the body of {len(odd)} of {len(motions)} clips "
+            f"({quoted(odd, 3)}) about {middle(list(odd.values())):.2g} m tall: give another, or none, and "
+            "it is guessed clip by clip."
+        )
     return units, notes
 
 
