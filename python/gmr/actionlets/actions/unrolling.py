@@ -108,7 +108,7 @@ def united(spans: Sequence[tuple[float, float]]) -> Floats:
 def scored(knots_of: Mapping[str, Floats], seconds: float) -> Score:
     """The score through the extremes of all degrees of freedom, from 0 to ``seconds``."""
     if knots_of and not _are_apart([*knots_of.values()]):
-        knots_of = {dof: _apart(rows) for dof, rows in knots_of.items()}
+        knots_of = {dof: rows if _are_apart([rows]) else _apart(rows) for dof, rows in knots_of.items()}
     return Score.through(knots_of, seconds)
 
 

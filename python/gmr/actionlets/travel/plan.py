@@ -3,6 +3,7 @@ turns."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -141,7 +142,7 @@ def _of_foot(
     found: list[Stance] = []
     before = -np.inf
     for begin, end in table[np.argsort(table[:, 0], kind="stable")].tolist():
-        if not (np.isfinite(begin) and np.isfinite(end) and begin < end):
+        if not (math.isfinite(begin) and math.isfinite(end) and begin < end):
             raise ActionletError(
                 f"the {side} foot's contact ({begin}, {end}) must begin before it ends, in seconds"
             )
@@ -151,8 +152,8 @@ def _of_foot(
                 "let it lift between them, or make one of them"
             )
         before = end
-        first = int(np.ceil((begin - start) * fps - _FRAME))
-        last = int(np.floor((end - start) * fps + _FRAME))
+        first = math.ceil((begin - start) * fps - _FRAME)
+        last = math.floor((end - start) * fps + _FRAME)
         if last < 0 or first > frame_count - 1 or last < first:
             continue
         lands, leaves = first > 0, last < frame_count - 1

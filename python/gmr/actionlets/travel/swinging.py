@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from gmr.actionlets.travel.plan import Stance
 from gmr.actionlets.travel.slopes import slopes, spread
+from gmr.actionlets.travel.turns import picked
 
 __all__ = ["Air", "Edge", "cleared", "in_air", "led_over"]
 
@@ -109,14 +110,15 @@ def led_over(offsets: Floats, air: Air, fps: float) -> None:
         air: of this foot.
         fps: frames a second.
     """
-    found = np.zeros((len(air.frames), offsets.shape[1]))
+    found = np.zeros((len(air.frames), offsets.shape[1]), order="F")
+    gap = np.repeat(np.arange(len(air.counts)), air.counts)
     for edge in air.edges:
         speed = -edge.inward * slopes(offsets, edge.frames, edge.inward, edge.lengths)
         most = np.minimum(air.held, _CARRIED * fps)[:, None]
         window = np.minimum(most, _OVERSHOOT / (4 / 27) / np.maximum(np.abs(speed), 1e-9))
-        y = np.minimum(edge.away[:, None] / np.repeat(window, air.counts, axis=0), 1)
-        found += edge.fade[:, None] * np.repeat(offsets[edge.frames], air.counts, axis=0)
-        found += y * (1 - y) ** 2 * np.repeat(window * speed, air.counts, axis=0)
+        y = np.minimum(edge.away[:, None] / picked(window, gap), 1)
+        found += edge.fade[:, None] * picked(offsets[edge.frames], gap)
+        found += y * (1 - y) ** 2 * picked(window * speed, gap)
     offsets[air.frames] = found
 
 
