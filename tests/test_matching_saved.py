@@ -69,7 +69,8 @@ def test_an_independent_reader_finds_the_arrays(tmp_path: Path) -> None:
     arrays = load_file(tmp_path / "walks.gmrm")
     np.testing.assert_array_equal(arrays["features"], saved.features)
     np.testing.assert_array_equal(arrays["positions"], saved.positions)
-    np.testing.assert_array_equal(arrays["candidates"], saved.candidates)
+    found = np.sort(arrays["index_frames"].ravel())[: saved.candidates.sum()]
+    np.testing.assert_array_equal(found, np.flatnonzero(saved.candidates))
     np.testing.assert_array_equal(arrays["steps"][:, :2], saved.displacements)
 
 
@@ -82,6 +83,47 @@ def test_what_is_no_saved_database_is_refused_in_a_sentence(tmp_path: Path) -> N
         Database.open(path)
     save_file({"features": np.zeros((3, 27), np.float32)}, path)
     with pytest.raises(FormatError, match="it is no saved motion database"):
+        Database.open(path)
+
+
+def test_damage_is_told_where_a_search_meets_it_and_by_the_whole_check(tmp_path: Path) -> None:
+    path = tmp_path / "walks.gmrm"
+    saved = Database.build(WALKS)
+    saved.save(path)
+    assert len(Database.open(path, check=True)) == len(saved)
+    data = bytearray(path.read_bytes())
+    start = 8 + int.from_bytes(data[:8], "little")
+    begin, _ = json.loads(data[8:start])["index_rows"]["data_offsets"]
+    data[start + begin + 7] ^= 1
+    path.write_bytes(data)
+    told = r"^[^:]*walks.gmrm: leaf 0 of its index is damaged; save the database again"
+    with pytest.raises(FormatError, match=told):
+        Database.open(path, check=True)
+    with pytest.raises(ValueError, match=told):
+        Database.open(path).search(saved.features[saved.candidates])
+
+
+def test_an_index_of_other_rows_is_found_by_the_whole_check(tmp_path: Path) -> None:
+    path = tmp_path / "walks.gmrm"
+    saved = Database.build(WALKS)
+    saved.save(path)
+    data = bytearray(path.read_bytes())
+    start = 8 + int.from_bytes(data[:8], "little")
+    begin, _ = json.loads(data[8:start])["features"]["data_offsets"]
+    row = int(np.flatnonzero(saved.candidates)[0])
+    data[start + begin + 4 * row * saved.features.shape[1]] ^= 1
+    path.write_bytes(data)
+    with pytest.raises(FormatError, match=rf"walks.gmrm: .*holds other numbers than row {row}"):
+        Database.open(path, check=True)
+
+
+def test_a_file_of_an_older_version_says_how_to_make_it_anew(tmp_path: Path) -> None:
+    path = tmp_path / "walks.gmrm"
+    Database.build(WALKS).save(path)
+    path.write_bytes(path.read_bytes().replace(rb"\"version\":2", rb"\"version\":1", 1))
+    with pytest.raises(
+        FormatError, match=r"of version 1, .* version 2; build the database of its clips again"
+    ):
         Database.open(path)
 
 

@@ -200,6 +200,13 @@ def save_database(
         OSError: the file cannot be written.
     """
 
+def check_database(database: Database) -> None:
+    """Holds the index against the rows.
+
+    Raises:
+        ValueError: a part of its file is damaged, or it is the index of other rows.
+    """
+
 def open_database(path: str) -> tuple[Database, list[str], list[str], dict[str, str]]:
     """What was saved, mapped into memory.
 

@@ -6,8 +6,8 @@ mod synthetic;
 use std::path::PathBuf;
 
 use gmr_core::matching::database::Database;
-use gmr_core::matching::file::{Labels, open, save};
-use gmr_core::matching::index::Query;
+use gmr_core::matching::file::{Labels, check, open, save};
+use gmr_core::matching::index::{Hit, Query, brute_force};
 use gmr_core::matching::matcher::Settings;
 use gmr_core::matching::path::Segment;
 use gmr_core::matching::request::Tracking;
@@ -68,6 +68,7 @@ fn what_is_opened_has_the_bits_of_what_was_saved() {
         let bytes = std::fs::read(&place.0).unwrap();
         let (opened, read) = open(&place.0).unwrap();
         assert_eq!(read, labels(&saved));
+        assert_eq!(check(&opened), Ok(()));
         assert_eq!(opened.features(), saved.features());
         assert_eq!(opened.positions(), saved.positions());
         assert_eq!(opened.rotations(), saved.rotations());
@@ -117,12 +118,16 @@ fn what_is_no_saved_database_is_refused_in_a_sentence() {
         (whole[..whole.len() - 1].to_vec(), "not fully covered"),
         (text("gmr_matching", "gmr_watching"), "it is no saved motion database"),
         (text("\"version\\\"", "\"VERSION\\\""), "missing field `version`"),
-        (text("version\\\":1,", "version\\\":2,"), "it is of version 2; this gmr reads version 1"),
+        (
+            text("version\\\":2,", "version\\\":1,"),
+            "it is of version 1, where this gmr reads version 2; build the database",
+        ),
+        (text("candidate_count\\\":720", "candidate_count\\\":990"), "990 candidates are told of among"),
+        (text("candidate_count\\\":720", "candidate_count\\\":721"), "the array 'index_rows' is of F32"),
         (text("\"heading\"", "\"handing\""), "the array 'heading' is missing"),
         (text("root_facing", "root_farcing".get(..11).unwrap()), "which nobody knows"),
         (text("\"rate\\\":60.0", "\"rate\\\":-0.0"), "a rate of -0 rows a second"),
         (text("[20,40,60]", "[20,40,6e]"), "its description is not as it should be"),
-        (text("[20,40,60]", "[20,40,99]"), "row 201 is a candidate, but its clip lacks"),
         (text("joint \u{e9}0\\\",", "joint \u{e9}0\\\" "), "its description is not as it should be"),
     ] {
         let message = refusal(&bytes);
@@ -150,7 +155,14 @@ proptest! {
         std::fs::write(&place.0, &bytes).unwrap();
         if let Ok((opened, _)) = open(&place.0) {
             let query = vec![0.1; opened.dims()];
-            opened.index().search(&Query::new(&query)).unwrap();
+            // What is damaged is refused where it is met, and never answered wrongly.
+            if let Ok(found) = opened.index().search(&Query::new(&query)) {
+                let of = |hit: Hit| brute_force::cost(&query, saved.feature_row(hit.frame));
+                prop_assert!(found.is_none_or(|hit| hit.cost == of(hit)));
+            }
+            let _ = check(&opened);
+            prop_assert_eq!(opened.candidates().len(), opened.row_count());
+            prop_assert_eq!(opened.clip_of().len(), opened.row_count());
             for row in 0..opened.row_count() as u32 {
                 let next = opened.next_row(row);
                 prop_assert!(next.is_none_or(|next| (next as usize) < opened.row_count()));

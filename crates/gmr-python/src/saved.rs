@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gmr_core::matching::file::{Fault, FileError, Labels, open, save};
+use gmr_core::matching::file::{Fault, FileError, Labels, check, open, save};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -25,6 +25,12 @@ fn save_database(
     py.detach(|| save(&database.0, &labels, &path)).map_err(refused)
 }
 
+/// A `ValueError` where the index is not that of the rows.
+#[pyfunction]
+fn check_database(py: Python<'_>, database: &PyDatabase) -> PyResult<()> {
+    py.detach(|| check(&database.0)).map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
 #[pyfunction]
 fn open_database(py: Python<'_>, path: PathBuf) -> PyResult<Opened> {
     let (database, Labels { joints, clips, notes }) = py.detach(|| open(&path)).map_err(refused)?;
@@ -41,5 +47,6 @@ fn refused(error: FileError) -> PyErr {
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(save_database, module)?)?;
+    module.add_function(wrap_pyfunction!(check_database, module)?)?;
     module.add_function(wrap_pyfunction!(open_database, module)?)
 }

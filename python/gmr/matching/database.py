@@ -120,7 +120,7 @@ class Database:
 
     def __len__(self) -> int:
         """N."""
-        return len(self.clips)
+        return len(self.core.features)
 
     @property
     def rate(self) -> float:
@@ -315,17 +315,21 @@ class Database:
         saved.save(self, path)
 
     @classmethod
-    def open(cls, path: str | PathLike[str]) -> Database:
-        """A saved database, mapped into memory: poses are read when they are looked at.
+    def open(cls, path: str | PathLike[str], *, check: bool = False) -> Database:
+        """A saved database, mapped into memory: rows, poses and the index are read when they are looked at.
 
-        Searches and trials have the same bits as those of the database that was saved. The index is built
-        again, for this machine, which reads all features once.
+        Opening takes as long for many rows as for few. Searches and trials have the same bits as those of the
+        database that was saved. A search that meets a damaged part of the index raises a ``ValueError``.
+
+        Args:
+            check: read the whole index and hold it against the rows: every answer is then that of a look at
+                every row.
 
         Raises:
-            FormatError: the file is no saved database, or is damaged.
+            FormatError: the file is no saved database, is one of another version, or is damaged.
             OSError: it cannot be read.
         """
-        return cls(**saved.contents(path))
+        return cls(**saved.contents(path, check))
 
     def __repr__(self) -> str:
         seconds = len(self) / self.rate

@@ -59,16 +59,18 @@ def save(database: Database, path: str | os.PathLike[str]) -> None:
     )
 
 
-def contents(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """The fields of the :class:`gmr.matching.Database` in a file.
+def contents(path: str | os.PathLike[str], check: bool) -> dict[str, Any]:
+    """The fields of the :class:`gmr.matching.Database` in a file, whose index may be held against its rows.
 
     Raises:
-        FormatError: it is no saved database, or one that no Python program saved.
+        FormatError: it is no saved database, one that no Python program saved, or one that fails the check.
     """
     try:
         core, names, clip_names, notes = _core.open_database(os.fspath(path))
+        if check:
+            _core.check_database(core)
     except ValueError as error:
-        raise FormatError(str(error), file=os.fspath(path)) from error
+        raise FormatError(str(error).removeprefix(f"{os.fspath(path)}: "), file=os.fspath(path)) from error
     try:
         known = json.loads(notes[_NOTE])
         fields = {

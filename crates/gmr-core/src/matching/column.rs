@@ -1,8 +1,11 @@
 //! Numbers of a database, one entry a row: in memory of their own, or in that of a mapped file.
 
 use std::ops::Deref;
+
 #[cfg(feature = "file")]
 use std::sync::Arc;
+
+use super::aligned::Aligned;
 
 /// A column, not to be changed.
 #[derive(Debug, Clone)]
@@ -11,6 +14,7 @@ pub(super) struct Column<T: Copy + 'static>(Source<T>);
 #[derive(Debug, Clone)]
 enum Source<T: Copy + 'static> {
     Owned(Vec<T>),
+    Aligned(Aligned<T>),
     /// The values lie in the map, which they keep alive; they are never handed out for longer than the column lives.
     #[cfg(feature = "file")]
     Mapped {
@@ -26,6 +30,7 @@ impl<T: Copy> Deref for Column<T> {
     fn deref(&self) -> &[T] {
         match &self.0 {
             Source::Owned(values) => values,
+            Source::Aligned(values) => values.as_slice(),
             #[cfg(feature = "file")]
             Source::Mapped { values, .. } => values,
         }
@@ -35,6 +40,12 @@ impl<T: Copy> Deref for Column<T> {
 impl<T: Copy> From<Vec<T>> for Column<T> {
     fn from(values: Vec<T>) -> Self {
         Self(Source::Owned(values))
+    }
+}
+
+impl<T: Copy> From<Aligned<T>> for Column<T> {
+    fn from(values: Aligned<T>) -> Self {
+        Self(Source::Aligned(values))
     }
 }
 

@@ -12,7 +12,7 @@ use crate::matching::normalization::Normalization;
 use crate::matching::subset::Left;
 use crate::skeleton::Topology;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Where a clip lies in the database.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -65,9 +65,11 @@ pub struct Database {
 #[derive(Debug, Clone)]
 pub(super) struct Rows {
     pub(super) clips: Vec<Clip>,
-    pub(super) clip_of: Column<u32>,
+    /// Which clip each row is of; of a database in a file made when it is asked for.
+    pub(super) clip_of: OnceLock<Vec<u32>>,
     pub(super) features: Column<f32>,
-    pub(super) candidates: Column<bool>,
+    /// The rows whose clip holds all that their features look at; made as `clip_of` is.
+    pub(super) candidates: OnceLock<Vec<bool>>,
     pub(super) tags: Column<u32>,
     /// Displacement and turn.
     pub(super) steps: Column<[f32; 3]>,
@@ -88,7 +90,7 @@ impl Database {
     /// Number of rows N.
     #[must_use]
     pub fn row_count(&self) -> usize {
-        self.rows.clip_of.len()
+        self.rows.tags.len()
     }
 
     /// Numbers per feature row D.
@@ -145,13 +147,25 @@ impl Database {
     /// Index of the clip that each row belongs to (N).
     #[must_use]
     pub fn clip_of(&self) -> &[u32] {
-        &self.rows.clip_of
+        self.rows.clip_of.get_or_init(|| {
+            let rows = self.rows.clips.iter().zip(0..);
+            rows.flat_map(|(clip, number)| std::iter::repeat_n(number, clip.rows.len())).collect()
+        })
+    }
+
+    /// The clip that a row belongs to.
+    fn clip_at(&self, row: u32) -> &Clip {
+        let number = match self.rows.clip_of.get() {
+            Some(clip_of) => clip_of[row as usize] as usize,
+            None => self.rows.clips.partition_point(|clip| clip.rows.end <= row),
+        };
+        &self.rows.clips[number]
     }
 
     /// The rows of the clip that `row` belongs to.
     #[must_use]
     pub fn clip_rows(&self, row: u32) -> Range<u32> {
-        self.rows.clips[self.rows.clip_of[row as usize] as usize].rows.clone()
+        self.clip_at(row).rows.clone()
     }
 
     /// The row played after `row`: the next of its clip, `None` at the clip's end and where the next one is gone.
@@ -163,13 +177,7 @@ impl Database {
     /// Whether a row may be shown: all may, but in a [`Database::subset`].
     #[must_use]
     pub fn has_row(&self, row: u32) -> bool {
-        self.left.as_ref().is_none_or(|left| left.rows[row as usize])
-    }
-
-    /// Which rows may be jumped to (N): those whose clip holds all that their features look at.
-    #[must_use]
-    pub fn candidates(&self) -> &[bool] {
-        self.left.as_ref().map_or(&self.rows.candidates, |left| &left.candidates[..])
+        self.left.as_ref().is_none_or(|left| left.has(row))
     }
 
     /// Tag bits of each row (N).
@@ -286,8 +294,7 @@ impl Database {
     /// Offsets `(J, 3)`, metres, of the skeleton of the clip that `row` belongs to: performers differ in size.
     #[must_use]
     pub fn offsets(&self, row: u32) -> &[f32] {
-        let clip = &self.rows.clips[self.rows.clip_of[row as usize] as usize];
-        row_of(&self.bone_sets, clip.bones, 3 * self.joint_count())
+        row_of(&self.bone_sets, self.clip_at(row).bones, 3 * self.joint_count())
     }
 }
 

@@ -1,16 +1,20 @@
 //! A motion database in a file: saved whole, opened by mapping it into memory.
 //!
 //! The file is a safetensors container (little-endian arrays behind a JSON header); docs/matching.md lists its arrays.
-//! Opening looks at the header, at the clips, candidates and tags, and at the features, of which the index is built
-//! again; poses are brought in when they are shown. A map shows what the file holds now: a saved database takes the
-//! place of the old file and never writes into it; another program that cuts a mapped file short ends the process.
+//! Opening looks at the header, the skeleton and the clips, and at no row: the index lies in the file too and is
+//! searched there, and whatever a search, a trial or a picture needs is brought in when it is looked at. So are its
+//! errors told only then, but for [`check`], which looks at the whole index.
+//! A map shows what the file holds now: a saved database takes the place of the old file and never writes into it;
+//! another program that cuts a mapped file short ends the process.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+
+mod index;
 
 use memmap2::Mmap;
 use safetensors::tensor::{Dtype, Metadata, TensorInfo};
@@ -21,13 +25,18 @@ use super::builder::check_skeleton;
 use super::column::Column;
 use super::database::{Clip, Database, Rows};
 use super::features::{Group, Measure, Schema};
-use super::index::Index;
+use super::index::IndexError;
+use super::index::stored::Arrays;
 use super::normalization::Normalization;
+use super::subset::Left;
 use crate::skeleton::Topology;
 
 /// The string of the container's metadata that tells what the arrays do not.
 const KEY: &str = "gmr_matching";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
+
+/// Where arrays begin: a whole number of cache lines into the file.
+const LINE: usize = 64;
 
 /// Bytes of a header at most: it is read whole.
 const MOST_HEADER: u64 = 1 << 24;
@@ -47,6 +56,7 @@ pub struct Labels {
 struct Description {
     version: u32,
     rate: f64,
+    candidate_count: usize,
     groups: Vec<GroupText>,
     constant_groups: Vec<usize>,
     joints: Vec<String>,
@@ -80,7 +90,9 @@ pub fn save(database: &Database, labels: &Labels, path: &Path) -> Result<(), Fil
     let write = || -> Result<(), Fault> {
         let clips: Vec<[u32; 3]> =
             database.clips().iter().map(|clip| [clip.rows.start, clip.rows.end, clip.bones]).collect();
-        let (header, arrays) = laid_out(database, labels, &clips)?;
+        let index = database.index.in_eights(database.features(), database.candidates(), database.tags())?;
+        let index = index.arrays();
+        let (header, arrays) = laid_out(database, labels, &clips, &index)?;
         // Where a link stands, the file that it leads to is replaced.
         let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         replace(&place, &header, &arrays).map_err(Fault::Io)
@@ -88,10 +100,10 @@ pub fn save(database: &Database, labels: &Labels, path: &Path) -> Result<(), Fil
     write().map_err(refuse)
 }
 
-/// Opens a saved database by mapping it into memory, and builds its index for this machine.
+/// Opens a saved database by mapping it into memory; takes as long for many rows as for few.
 ///
 /// # Errors
-/// When the file cannot be read, is no saved database, or is of a later version.
+/// When the file cannot be read, is no saved database, or is of another version.
 pub fn open(path: &Path) -> Result<(Database, Labels), FileError> {
     let read = || -> Result<(Database, Labels), Fault> {
         let file = File::open(path).map_err(Fault::Io)?;
@@ -101,9 +113,18 @@ pub fn open(path: &Path) -> Result<(Database, Labels), FileError> {
         }
         // SAFETY: the file is mapped for reading only; that nobody cuts it short meanwhile is asked for above.
         let map = unsafe { Mmap::map(&file) }.map_err(Fault::Io)?;
-        Opened::new(Arc::new(map))?.database()
+        Opened::new(Arc::new(map))?.database(path)
     };
     read().map_err(|fault| FileError { path: path.to_owned(), fault })
+}
+
+/// Looks at all of the index of an opened database and holds it against the rows: whether its searches find what a
+/// look at every row would find.
+///
+/// # Errors
+/// What is wrong, where something is.
+pub fn check(database: &Database) -> Result<(), IndexError> {
+    database.index.check(database.features(), database.candidates(), database.tags())
 }
 
 /// An array to be written.
@@ -119,6 +140,7 @@ fn laid_out<'a>(
     database: &'a Database,
     labels: &Labels,
     clips: &'a [[u32; 3]],
+    index: &'a Arrays<'a>,
 ) -> Result<(Vec<u8>, Vec<Array<'a>>), Fault> {
     let rows = &database.rows;
     let (n, j, s, t) =
@@ -127,8 +149,9 @@ fn laid_out<'a>(
     let topology = database.topology();
     let bone_sets = &database.bone_sets;
     let f32s = bytemuck::cast_slice::<f32, u8>;
-    // The wider types first: then each begins where its numbers are aligned.
-    let mut arrays = vec![
+    // The index first, where vectors are aligned; then the wider types first, so that each begins where its numbers are.
+    let mut arrays = index::arrays(index);
+    arrays.extend([
         array("ground", Dtype::F64, &[n, 2], bytemuck::cast_slice(&rows.ground)),
         array("heading", Dtype::F64, &[n], bytemuck::cast_slice(&rows.heading)),
         array("features", Dtype::F32, &[n, database.dims()], f32s(&rows.features)),
@@ -139,16 +162,15 @@ fn laid_out<'a>(
         array("bone_sets", Dtype::F32, &[bone_sets.len() / (3 * j).max(1), j, 3], f32s(bone_sets)),
         array("offset", Dtype::F32, &[database.dims()], f32s(&database.normalization.offset)),
         array("scale", Dtype::F32, &[database.dims()], f32s(&database.normalization.scale)),
-        array("clip_of", Dtype::U32, &[n], bytemuck::cast_slice(&rows.clip_of)),
+        array("index_order", Dtype::U32, &[database.dims()], bytemuck::cast_slice(index.order)),
         array("tags", Dtype::U32, &[n], bytemuck::cast_slice(&rows.tags)),
         array("clips", Dtype::U32, &[clips.len(), 3], bytemuck::cast_slice(clips)),
         array("parents", Dtype::I32, &[j], bytemuck::cast_slice(topology.parents())),
         array("slots", Dtype::I32, &[j], bytemuck::cast_slice(topology.slots())),
         array("translated", Dtype::I32, &[t], bytemuck::cast_slice(&database.translated)),
-        array("candidates", Dtype::U8, &[n], bytemuck::cast_slice(&rows.candidates)),
-    ];
+    ]);
     if let Some(left) = &database.left {
-        arrays.push(array("left", Dtype::U8, &[n], bytemuck::cast_slice(&left.rows)));
+        arrays.push(array("left", Dtype::U8, &[n], left.rows()));
     }
     let mut end = 0;
     let infos = arrays.iter().map(|array| {
@@ -162,7 +184,7 @@ fn laid_out<'a>(
     let metadata = HashMap::from([(KEY.to_owned(), description)]);
     let metadata = Metadata::new(Some(metadata), infos).map_err(Fault::Container)?;
     let mut header = serde_json::to_vec(&metadata).map_err(Fault::from)?;
-    header.resize(header.len().next_multiple_of(8), b' ');
+    header.resize((8 + header.len()).next_multiple_of(LINE) - 8, b' ');
     match header.len() as u64 > MOST_HEADER {
         true => Err(Fault::Container(SafeTensorError::HeaderTooLarge)),
         false => Ok((header, arrays)),
@@ -183,6 +205,7 @@ fn describe(database: &Database, labels: &Labels) -> Description {
     Description {
         version: VERSION,
         rate: database.rate,
+        candidate_count: database.index.candidate_count(),
         groups: database.schema.groups().iter().map(group).collect(),
         constant_groups: database.constant_groups.clone(),
         joints: labels.joints.clone(),
@@ -241,15 +264,15 @@ impl Opened {
         }
         let Versioned { version } = serde_json::from_str(text)?;
         if version != VERSION {
-            return Err(content(format!("it is of version {version}; this gmr reads version {VERSION}")));
+            return Err(Fault::Version { found: version });
         }
         let description = serde_json::from_str(text)?;
         Ok(Self { map, start: 8 + length, metadata, description })
     }
 
-    fn database(self) -> Result<(Database, Labels), Fault> {
-        let clip_of: Column<u32> = self.column("clip_of", Dtype::U32, &[None])?;
-        let n = clip_of.len();
+    fn database(self, path: &Path) -> Result<(Database, Labels), Fault> {
+        let tags: Column<u32> = self.column("tags", Dtype::U32, &[None])?;
+        let n = tags.len();
         // Only where there are rows does the size of the file bound how wide they are.
         if n == 0 {
             return Err(content("it has no rows"));
@@ -267,7 +290,7 @@ impl Opened {
             return Err(content(format!("{n} rows hold no clip as long as its features look")));
         }
         let bone_sets: Column<f32> = self.column("bone_sets", Dtype::F32, &[None, Some(joints), Some(3)])?;
-        let clips = self.clips(&clip_of, bone_sets.len() / (3 * joints).max(1))?;
+        let clips = self.clips(n, bone_sets.len() / (3 * joints).max(1))?;
         let normalization = Normalization {
             offset: self.column::<f32>("offset", Dtype::F32, &[Some(dims)])?.to_vec(),
             scale: self.column::<f32>("scale", Dtype::F32, &[Some(dims)])?.to_vec(),
@@ -284,13 +307,14 @@ impl Opened {
             steps: self.column("steps", Dtype::F32, &[Some(n), Some(3)])?,
             ground: self.column("ground", Dtype::F64, &[Some(n), Some(2)])?,
             heading: self.column("heading", Dtype::F64, &[Some(n)])?,
-            tags: self.column("tags", Dtype::U32, &[Some(n)])?,
-            candidates: self.flags("candidates", n)?,
-            clip_of,
+            tags,
+            candidates: OnceLock::new(),
+            clip_of: OnceLock::new(),
             clips,
         };
-        check_candidates(&schema, &rows)?;
-        let left = self.info("left").is_ok().then(|| self.flags("left", n)).transpose()?;
+        let left = self.info("left").is_ok().then(|| self.column::<u8>("left", Dtype::U8, &[Some(n)]));
+        let left = left.transpose()?;
+        let index = self.index(n, dims, path)?;
         let Description { rate, constant_groups, joints: names, clips: clip_names, notes, .. } =
             self.description;
         if !(rate > 0.0 && rate <= 1e6) {
@@ -306,8 +330,6 @@ impl Opened {
                 return Err(content(format!("{found} names are given for {count} {what}")));
             }
         }
-        let index =
-            Index::build(&rows.features, dims, &rows.candidates, Some(&rows.tags)).map_err(content)?;
         let labels = Labels { joints: names, clips: clip_names, notes };
         let database = Database {
             topology,
@@ -319,11 +341,7 @@ impl Opened {
             constant_groups,
             index: Arc::new(index),
             rows: Arc::new(rows),
-            left: None,
-        };
-        let database = match left {
-            None => database,
-            Some(left) => database.subset(&left).map_err(content)?,
+            left: left.map(|rows| Arc::new(Left::new(rows))),
         };
         Ok((database, labels))
     }
@@ -348,13 +366,13 @@ impl Opened {
     }
 
     /// The clips, which lie one after the other and are all there is.
-    fn clips(&self, clip_of: &[u32], bone_sets: usize) -> Result<Vec<Clip>, Fault> {
+    fn clips(&self, row_count: usize, bone_sets: usize) -> Result<Vec<Clip>, Fault> {
         let listed: Column<[u32; 3]> = self.column("clips", Dtype::U32, &[None, Some(3)])?;
         let (mut clips, mut at) = (Vec::with_capacity(listed.len()), 0);
         for (number, &[start, end, bones]) in listed.iter().enumerate() {
-            let own = (start == at && start <= end).then(|| clip_of.get(start as usize..end as usize));
-            if !own.flatten().is_some_and(|own| own.iter().all(|&clip| clip as usize == number)) {
-                return Err(content(format!("clip {number} does not lie where its rows do")));
+            if start != at || end < start || end as usize > row_count {
+                let what = format!("clip {number}, of rows {start} to {end}, does not follow the one before");
+                return Err(content(what));
             }
             if bones as usize >= bone_sets {
                 return Err(content(format!("clip {number} has bones {bones} of {bone_sets}")));
@@ -362,19 +380,10 @@ impl Opened {
             clips.push(Clip { rows: start..end, bones });
             at = end;
         }
-        if at as usize != clip_of.len() {
-            return Err(content(format!("{} rows belong to no clip", clip_of.len() - at as usize)));
+        if at as usize != row_count {
+            return Err(content(format!("{} rows belong to no clip", row_count - at as usize)));
         }
         Ok(clips)
-    }
-
-    /// What holds for each row or does not.
-    fn flags(&self, name: &str, count: usize) -> Result<Column<bool>, Fault> {
-        let range = self.bytes(name, Dtype::U8, &[Some(count)])?;
-        Column::mapped(&self.map, |map| {
-            bytemuck::checked::try_cast_slice(&map[range])
-                .map_err(|_| content(format!("the array '{name}' is not all 0 or 1")))
-        })
     }
 
     /// An array of this type and shape, where a length may be any.
@@ -429,20 +438,6 @@ impl Opened {
     }
 }
 
-/// A row that can be found has all that its features look at, or what is left of a database could not be told.
-fn check_candidates(schema: &Schema, rows: &Rows) -> Result<(), Fault> {
-    let (past, future) = (schema.past(), schema.future());
-    for clip in &rows.clips {
-        let (start, end) = (clip.rows.start as usize, clip.rows.end as usize);
-        let whole = start.saturating_add(past)..end.saturating_sub(future);
-        if let Some(row) = (start..end).find(|row| rows.candidates[*row] && !whole.contains(row)) {
-            let what = format!("row {row} is a candidate, but its clip lacks what its features look at");
-            return Err(content(what));
-        }
-    }
-    Ok(())
-}
-
 /// Why a database cannot be saved or opened.
 #[derive(Debug)]
 pub struct FileError {
@@ -461,10 +456,23 @@ pub enum Fault {
     Container(SafeTensorError),
     /// It is one, but not of a motion database.
     Content(String),
+    /// It is a motion database as another gmr keeps it.
+    Version {
+        /// The version that it is of.
+        found: u32,
+    },
+    /// The index that is to be saved cannot be made.
+    Index(IndexError),
 }
 
 fn content(what: impl ToString) -> Fault {
     Fault::Content(what.to_string())
+}
+
+impl From<IndexError> for Fault {
+    fn from(error: IndexError) -> Self {
+        Self::Index(error)
+    }
 }
 
 impl From<serde_json::Error> for Fault {
@@ -487,6 +495,12 @@ impl fmt::Display for Fault {
                 write!(f, "{error}; a saved motion database begins with the header of a safetensors file")
             }
             Self::Content(what) => write!(f, "{what}; save the database again"),
+            Self::Version { found } => write!(
+                f,
+                "it is of version {found}, where this gmr reads version {VERSION}; build the database of its clips \
+                 again and save that"
+            ),
+            Self::Index(error) => error.fmt(f),
         }
     }
 }

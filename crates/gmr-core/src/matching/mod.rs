@@ -1,6 +1,7 @@
 //! Motion matching: simulation root, features, exact nearest-neighbour index, trials, and
 //! [`character::Character`], which a game steps.
 
+mod aligned;
 mod body;
 pub mod builder;
 pub mod carriers;

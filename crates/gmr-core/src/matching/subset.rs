@@ -5,9 +5,10 @@
 //! its number, its features and their scale, so that trials on whole clips are, bit by bit, those on a database built
 //! of these clips with the same [`super::normalization::Normalization`].
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::builder::DatabaseError;
+use super::column::Column;
 use super::database::Database;
 use super::index::Index;
 use crate::error::ShapeError;
@@ -15,8 +16,27 @@ use crate::error::ShapeError;
 /// Which rows of a database are left (N), and which of them may be jumped to (N).
 #[derive(Debug, Clone)]
 pub(super) struct Left {
-    pub(super) rows: Vec<bool>,
-    pub(super) candidates: Vec<bool>,
+    /// 0 where a row is gone.
+    rows: Column<u8>,
+    /// Made when it is asked for.
+    candidates: OnceLock<Vec<bool>>,
+}
+
+impl Left {
+    /// Those that are not 0.
+    pub(super) fn new(rows: impl Into<Column<u8>>) -> Self {
+        Self { rows: rows.into(), candidates: OnceLock::new() }
+    }
+
+    pub(super) fn has(&self, row: u32) -> bool {
+        self.rows[row as usize] != 0
+    }
+
+    /// As a file keeps them.
+    #[cfg(feature = "file")]
+    pub(super) fn rows(&self) -> &[u8] {
+        &self.rows
+    }
 }
 
 impl Database {
@@ -26,26 +46,43 @@ impl Database {
     /// When `left` has not one entry a row, or no row that may be jumped to is left.
     pub fn subset(&self, left: &[bool]) -> Result<Self, DatabaseError> {
         ShapeError::check("rows left", self.row_count(), left.len())?;
-        let rows: Vec<bool> = (0..).zip(left).map(|(row, &left)| left && self.has_row(row)).collect();
-        let candidates = self.with_their_support(&rows);
-        if !candidates.contains(&true) {
+        let rows: Vec<u8> = (0..).zip(left).map(|(row, &left)| u8::from(left && self.has_row(row))).collect();
+        let part = Self { left: Some(Arc::new(Left::new(rows))), ..self.clone() };
+        if !part.candidates().contains(&true) {
             let needed = self.schema().past() + 1 + self.schema().future();
             return Err(DatabaseError::NoCandidates { needed });
         }
-        let index = Index::build(self.features(), self.dims(), &candidates, Some(self.tags()))?;
-        Ok(Self { index: Arc::new(index), left: Some(Arc::new(Left { rows, candidates })), ..self.clone() })
+        let index = Index::build(self.features(), self.dims(), part.candidates(), Some(self.tags()))?;
+        Ok(Self { index: Arc::new(index), ..part })
+    }
+
+    /// Which rows may be jumped to (N): those whose clip holds all that their features look at, and of a
+    /// [`Database::subset`] those of which all of that is left.
+    #[must_use]
+    pub fn candidates(&self) -> &[bool] {
+        let whole = || self.rows.candidates.get_or_init(|| self.with_their_window());
+        match &self.left {
+            None => whole(),
+            Some(left) => left.candidates.get_or_init(|| self.with_their_support(left, whole())),
+        }
+    }
+
+    fn with_their_window(&self) -> Vec<bool> {
+        let (past, future) = (self.schema().past(), self.schema().future());
+        let within = |frames: usize| (0..frames).map(move |i| i >= past && i + future < frames);
+        self.clips().iter().flat_map(|clip| within(clip.rows.len())).collect()
     }
 
     /// The candidates of which all rows are left that their features look at.
-    fn with_their_support(&self, left: &[bool]) -> Vec<bool> {
+    fn with_their_support(&self, left: &Left, candidates: &[bool]) -> Vec<bool> {
         let (past, future) = (self.schema().past(), self.schema().future());
-        let mut gone_before = vec![0_u32; left.len() + 1];
-        for (row, &left) in left.iter().enumerate() {
-            gone_before[row + 1] = gone_before[row] + u32::from(!left);
+        let mut gone_before = vec![0_u32; left.rows.len() + 1];
+        for (row, &left) in left.rows.iter().enumerate() {
+            gone_before[row + 1] = gone_before[row] + u32::from(left == 0);
         }
         let is_whole = |(row, &candidate): (usize, &bool)| {
             candidate && gone_before[row + future + 1] == gone_before[row - past]
         };
-        self.candidates().iter().enumerate().map(is_whole).collect()
+        candidates.iter().enumerate().map(is_whole).collect()
     }
 }

@@ -77,7 +77,7 @@ impl Index {
     /// fewer. `goes_on` is asked now and then; once it says no, the rest of `hits` is left as it was.
     ///
     /// # Errors
-    /// When an array's length does not fit, or a query is not finite.
+    /// When an array's length does not fit, a query is not finite, or what was met in a file is damaged.
     pub fn search_batch(
         &self,
         batch: &Batch,
@@ -100,6 +100,7 @@ impl Index {
                     self.rank(&batch.query(first + i, self.dims), hits);
                 }
             });
+            self.check_soundness()?;
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Frames put in the order of a kd-tree, then leaves and boxes from the bottom up.
 
-use super::aligned::Aligned;
-use super::tree::{Level, Tree, edges};
+use super::super::aligned::Aligned;
+use super::tree::{Levels, Tree, block, edges};
 
 /// A frame and, above it, one of its features in a form that compares as the feature does.
 type Key = u64;
@@ -20,6 +20,20 @@ pub(super) struct Rows<'a> {
     pub(super) tags: Option<&'a [u32]>,
 }
 
+/// What becomes the leaves of a [`Tree`].
+struct Leaves<const W: usize> {
+    rows: Aligned<f32>,
+    frames: Vec<[u32; W]>,
+    tags: Vec<[u32; W]>,
+}
+
+/// What becomes the nodes of a [`Tree`].
+pub(super) struct Nodes<const W: usize> {
+    pub(super) boxes: Aligned<u32>,
+    pub(super) lowest: Vec<[u32; W]>,
+    pub(super) tags: Vec<[u32; W]>,
+}
+
 impl Rows<'_> {
     /// The tree of all candidates.
     pub(super) fn tree<const W: usize>(&self) -> Tree<W> {
@@ -30,40 +44,45 @@ impl Rows<'_> {
         let mut frames: Vec<u32> = keys.into_iter().map(frame_of).collect();
         frames.chunks_mut(W).for_each(<[u32]>::sort_unstable);
 
-        let mut tree = self.leaves(order, &frames);
-        if tree.frames.len() > 1 {
-            tree.levels.push(above_leaves(&tree));
-        }
-        while tree.levels.last().is_some_and(|top| top.lowest.len() > 1) {
-            tree.levels.push(above_nodes(&tree, tree.levels.len() - 1));
-        }
-        tree
-    }
-
-    /// Leaves of `frames`, `W` to each, and nothing above them.
-    fn leaves<const W: usize>(&self, order: Vec<u32>, frames: &[u32]) -> Tree<W> {
-        let leaf_count = frames.len().div_ceil(W);
+        let leaves = self.leaves(&order, &frames);
+        let levels = Levels::above(leaves.frames.len(), W);
+        let nodes = nodes_above(leaves.rows.as_slice(), &leaves.frames, &leaves.tags, &levels, self.dims);
         let mut places = vec![0; self.dims];
         order.iter().enumerate().for_each(|(place, &dimension)| places[dimension as usize] = place as u32);
-        let mut tree = Tree {
+        Tree {
             order,
             places,
+            levels,
+            rows: leaves.rows.into(),
+            frames: leaves.frames.into(),
+            tags: leaves.tags.into(),
+            boxes: nodes.boxes.into(),
+            lowest: nodes.lowest.into(),
+            node_tags: nodes.tags.into(),
+            #[cfg(feature = "file")]
+            seals: None,
+        }
+    }
+
+    /// Leaves of `frames`, `W` to each.
+    fn leaves<const W: usize>(&self, order: &[u32], frames: &[u32]) -> Leaves<W> {
+        let leaf_count = frames.len().div_ceil(W);
+        let mut leaves = Leaves {
             rows: Aligned::new(f32::INFINITY, leaf_count * self.dims * W),
             frames: vec![[u32::MAX; W]; leaf_count],
             tags: vec![[0; W]; leaf_count],
-            levels: Vec::new(),
         };
-        let rows = tree.rows.as_mut_slice().chunks_exact_mut(self.dims * W);
+        let rows = leaves.rows.as_mut_slice().chunks_exact_mut(self.dims * W);
         for ((leaf, frames), rows) in frames.chunks(W).enumerate().zip(rows) {
             for (lane, &frame) in frames.iter().enumerate() {
-                tree.frames[leaf][lane] = frame;
-                tree.tags[leaf][lane] = self.tags.map_or(0, |tags| tags[frame as usize]);
+                leaves.frames[leaf][lane] = frame;
+                leaves.tags[leaf][lane] = self.tags.map_or(0, |tags| tags[frame as usize]);
                 let row = self.row(frame);
                 let lanes = rows[lane..].iter_mut().step_by(W);
-                lanes.zip(&tree.order).for_each(|(x, &dimension)| *x = row[dimension as usize]);
+                lanes.zip(order).for_each(|(x, &dimension)| *x = row[dimension as usize]);
             }
         }
-        tree
+        leaves
     }
 
     /// Puts the frames so that every run of `W`, `W^2`, `W^3`, ... lies close together.
@@ -136,50 +155,63 @@ fn ascending(x: f32) -> u32 {
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
-/// The boxes around leaves.
-fn above_leaves<const W: usize>(tree: &Tree<W>) -> Level<W> {
-    level(tree, &tree.frames, &tree.tags, |leaf, dimension| {
-        let held = tree.frames[leaf].iter().filter(|&&frame| frame != u32::MAX).count();
-        let lanes = &tree.leaf(leaf)[dimension][..held];
-        (
-            lanes.iter().copied().fold(f32::INFINITY, f32::min),
-            lanes.iter().copied().fold(f32::NEG_INFINITY, f32::max),
-        )
-    })
-}
-
-/// The boxes around the nodes of `below`.
-fn above_nodes<const W: usize>(tree: &Tree<W>, below: usize) -> Level<W> {
-    let nodes = &tree.levels[below];
-    level(tree, &nodes.lowest, &nodes.tags, |node, dimension| {
-        let boxes = &tree.node(below, node)[dimension];
-        let low = boxes.iter().map(|&edges| edges::low(edges)).fold(f32::INFINITY, f32::min);
-        (low, boxes.iter().map(|&edges| edges::high(edges)).fold(f32::NEG_INFINITY, f32::max))
-    })
-}
-
-/// The level above children with these lowest frames and tags, whose extent in a dimension `extent` tells.
-fn level<const W: usize>(
-    tree: &Tree<W>,
-    lowest: &[[u32; W]],
+/// The nodes above leaves with these rows, frames and tags, level by level.
+pub(super) fn nodes_above<const W: usize>(
+    rows: &[f32],
+    frames: &[[u32; W]],
     tags: &[[u32; W]],
-    extent: impl Fn(usize, usize) -> (f32, f32),
-) -> Level<W> {
-    let (dims, nodes) = (tree.dims(), lowest.len().div_ceil(W));
-    let mut level = Level {
-        boxes: Aligned::new(edges::EMPTY, nodes * dims * W),
-        lowest: vec![[u32::MAX; W]; nodes],
-        tags: vec![[0; W]; nodes],
+    levels: &Levels,
+    dims: usize,
+) -> Nodes<W> {
+    let count = levels.node_count();
+    let mut nodes = Nodes {
+        boxes: Aligned::new(edges::EMPTY, count * dims * W),
+        lowest: vec![[u32::MAX; W]; count],
+        tags: vec![[0; W]; count],
     };
-    for child in 0..lowest.len() {
-        let (node, lane) = (child / W, child % W);
-        level.lowest[node][lane] = lowest[child].iter().copied().fold(u32::MAX, u32::min);
-        level.tags[node][lane] = tags[child].iter().fold(0, |all, tags| all | tags);
-        let boxes = level.boxes.as_mut_slice()[(node * dims * W + lane)..].iter_mut().step_by(W);
-        for (dimension, edges) in boxes.take(dims).enumerate() {
-            let (low, high) = extent(child, dimension);
-            *edges = edges::around(low, high);
+    for level in 0..levels.count() {
+        let first = levels.nodes(level).start;
+        let first_below = level.checked_sub(1).map_or(0, |below| levels.nodes(below).start);
+        let (boxes_below, boxes) = nodes.boxes.as_mut_slice().split_at_mut(first * dims * W);
+        let (lowest_below, lowest) = nodes.lowest.split_at_mut(first);
+        let (tags_below, above) = nodes.tags.split_at_mut(first);
+        for child in 0..levels.below(level) {
+            let (node, lane) = (child / W, child % W);
+            let boxes = boxes[(node * dims * W + lane)..].iter_mut().step_by(W).take(dims);
+            if level == 0 {
+                lowest[node][lane] = least(&frames[child]);
+                above[node][lane] = all_of(&tags[child]);
+                let rows = block(rows, child, dims).iter();
+                boxes.zip(rows).for_each(|(edges, lanes)| *edges = around_rows(lanes, &frames[child]));
+            } else {
+                let child = first_below + child;
+                lowest[node][lane] = least(&lowest_below[child]);
+                above[node][lane] = all_of(&tags_below[child]);
+                let below = block(boxes_below, child, dims).iter();
+                boxes.zip(below).for_each(|(edges, below)| *edges = around_boxes::<W>(below));
+            }
         }
     }
-    level
+    nodes
+}
+
+fn least(frames: &[u32]) -> u32 {
+    frames.iter().copied().fold(u32::MAX, u32::min)
+}
+
+fn all_of(tags: &[u32]) -> u32 {
+    tags.iter().fold(0, |all, tags| all | tags)
+}
+
+/// The edges around the numbers of those frames that there are.
+fn around_rows<const W: usize>(lanes: &[f32; W], frames: &[u32; W]) -> u32 {
+    let held = frames.iter().filter(|&&frame| frame != u32::MAX).count();
+    let lanes = lanes[..held].iter().copied();
+    edges::around(lanes.clone().fold(f32::INFINITY, f32::min), lanes.fold(f32::NEG_INFINITY, f32::max))
+}
+
+/// The edges around boxes.
+fn around_boxes<const W: usize>(boxes: &[u32; W]) -> u32 {
+    let low = boxes.iter().map(|&edges| edges::low(edges)).fold(f32::INFINITY, f32::min);
+    edges::around(low, boxes.iter().map(|&edges| edges::high(edges)).fold(f32::NEG_INFINITY, f32::max))
 }

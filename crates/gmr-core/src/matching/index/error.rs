@@ -1,6 +1,7 @@
 //! What can be wrong with features, tags or a query, in words.
 
 use std::fmt;
+use std::path::PathBuf;
 
 use super::Query;
 use crate::Isa;
@@ -47,6 +48,20 @@ pub enum IndexError {
     },
     /// The cost that hits must stay below is NaN.
     MaxCost,
+    /// A part of an index in a file is not as it was saved.
+    Damaged {
+        /// The file.
+        file: PathBuf,
+        /// A leaf or a node.
+        what: &'static str,
+        /// Which of them.
+        number: usize,
+    },
+    /// What an index holds is not what the rows say.
+    Contrary {
+        /// What is wrong, in words.
+        what: String,
+    },
     /// This machine cannot run what the index was to be built for.
     Isa {
         /// What it was to be built for.
@@ -75,6 +90,12 @@ impl fmt::Display for IndexError {
             Self::MaxCost => {
                 write!(f, "the cost to stay below is NaN; give a number, or infinity for no limit")
             }
+            Self::Damaged { file, what, number } => write!(
+                f,
+                "{}: {what} {number} of its index is damaged; save the database again",
+                file.display()
+            ),
+            Self::Contrary { what } => write!(f, "the index is not that of the rows: {what}"),
             Self::Isa { asked } => {
                 let known: Vec<_> = Isa::available().map(Isa::name).collect();
                 write!(f, "no index can be built for {asked} here; this machine runs {}", known.join(", "))

@@ -7,7 +7,6 @@
 
 use std::ops::Range;
 
-mod aligned;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
@@ -16,15 +15,22 @@ mod batch;
 mod best;
 pub mod brute_force;
 mod build;
+mod check;
 mod error;
 mod metric;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 mod scalar;
+#[cfg(feature = "file")]
+mod seal;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
+#[cfg(feature = "file")]
+pub(super) mod stored;
 mod traverse;
 mod tree;
+#[cfg(feature = "file")]
+mod twice;
 
 pub use batch::Batch;
 pub use error::IndexError;
@@ -122,6 +128,31 @@ enum Layout {
     Avx512(avx512::Avx512, Tree<16>),
     #[cfg(target_arch = "aarch64")]
     Neon(Tree<4>),
+    /// Of a file, where the machine has four lanes.
+    #[cfg(all(feature = "file", target_arch = "x86_64"))]
+    Sse2Twice(Tree<8>),
+    /// Of a file, where the machine has four lanes.
+    #[cfg(all(feature = "file", target_arch = "aarch64"))]
+    NeonTwice(Tree<8>),
+}
+
+#[cfg(feature = "file")]
+impl Layout {
+    /// A tree of eight lanes, searched by the widest kernels for it that `isa` has.
+    fn of_eights(isa: Isa, tree: Tree<8>) -> Self {
+        match isa {
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx512 | Isa::Avx2 => match avx2::Avx2::detect() {
+                Some(avx2) => Self::Avx2(avx2, tree),
+                None => Self::Sse2Twice(tree),
+            },
+            #[cfg(target_arch = "x86_64")]
+            Isa::Sse2 => Self::Sse2Twice(tree),
+            #[cfg(target_arch = "aarch64")]
+            Isa::Neon => Self::NeonTwice(tree),
+            _ => Self::Scalar(tree),
+        }
+    }
 }
 
 impl Index {
@@ -193,10 +224,13 @@ impl Index {
     /// The best frame below `query.max_cost`, or none.
     ///
     /// # Errors
-    /// When the query is not of `dims` finite numbers, a weight is no weight, or `max_cost` is NaN.
+    /// When the query is not of `dims` finite numbers, a weight is no weight, or `max_cost` is NaN; or when what the
+    /// search met in a file is damaged.
     pub fn search(&self, query: &Query) -> Result<Option<Hit>, IndexError> {
         check_query(query, self.dims, query.max_cost)?;
-        Ok(self.nearest(query))
+        let nearest = self.nearest(query);
+        self.check_soundness()?;
+        Ok(nearest)
     }
 
     /// The better of `start` and the best frame: `start`, the continuing pose with its cost, counts as one more
@@ -205,11 +239,13 @@ impl Index {
     /// A start of frame 0 is left only for what costs strictly less. `query.max_cost` is not looked at.
     ///
     /// # Errors
-    /// When the query is not of `dims` finite numbers, a weight is no weight, or the start's cost is NaN.
+    /// When the query is not of `dims` finite numbers, a weight is no weight, or the start's cost is NaN; or
+    /// when what the search met in a file is damaged.
     pub fn search_from(&self, query: &Query, start: Hit) -> Result<Hit, IndexError> {
         check_query(query, self.dims, start.cost)?;
         let mut nearest = Nearest(start);
         self.visit(query, &mut nearest);
+        self.check_soundness()?;
         Ok(nearest.0)
     }
 
@@ -217,10 +253,13 @@ impl Index {
     /// becomes [`Hit::NONE`].
     ///
     /// # Errors
-    /// When the query is not of `dims` finite numbers, a weight is no weight, or `max_cost` is NaN.
+    /// When the query is not of `dims` finite numbers, a weight is no weight, or `max_cost` is NaN; or when what the
+    /// search met in a file is damaged.
     pub fn search_top(&self, query: &Query, hits: &mut [Hit]) -> Result<usize, IndexError> {
         check_query(query, self.dims, query.max_cost)?;
-        Ok(self.rank(query, hits))
+        let found = self.rank(query, hits);
+        self.check_soundness()?;
+        Ok(found)
     }
 
     /// As [`Index::search`], of a query that was checked.
@@ -243,6 +282,33 @@ impl Index {
         ranked.finish()
     }
 
+    /// An error where a search met a part of a file that is not as it was saved: then no answer can be trusted.
+    fn check_soundness(&self) -> Result<(), IndexError> {
+        #[cfg(feature = "file")]
+        if let Some(tree) = self.eights()
+            && let Some(seals) = &tree.seals
+        {
+            return seals.check(tree.levels.leaf_count());
+        }
+        Ok(())
+    }
+
+    /// The tree where it is one of eight lanes.
+    #[cfg(feature = "file")]
+    fn eights(&self) -> Option<&Tree<8>> {
+        match &self.layout {
+            Layout::Scalar(tree) => Some(tree),
+            #[cfg(target_arch = "x86_64")]
+            Layout::Avx2(_, tree) | Layout::Sse2Twice(tree) => Some(tree),
+            #[cfg(target_arch = "x86_64")]
+            Layout::Sse2(_) | Layout::Avx512(..) => None,
+            #[cfg(target_arch = "aarch64")]
+            Layout::NeonTwice(tree) => Some(tree),
+            #[cfg(target_arch = "aarch64")]
+            Layout::Neon(_) => None,
+        }
+    }
+
     fn visit(&self, query: &Query, best: &mut impl Best) {
         match query.weights {
             None => self.visit_by::<Even>(query, best),
@@ -261,9 +327,19 @@ impl Index {
             Layout::Avx512(avx512, tree) => avx512.search::<M>(tree, query, best),
             #[cfg(target_arch = "aarch64")]
             Layout::Neon(tree) => traverse::search::<4, _, M>(neon::Neon, tree, query, best),
+            #[cfg(all(feature = "file", target_arch = "x86_64"))]
+            Layout::Sse2Twice(tree) => {
+                traverse::search::<8, _, M>(twice::Twice(sse2::Sse2), tree, query, best);
+            }
+            #[cfg(all(feature = "file", target_arch = "aarch64"))]
+            Layout::NeonTwice(tree) => {
+                traverse::search::<8, _, M>(twice::Twice(neon::Neon), tree, query, best);
+            }
         }
     }
 }
 
+#[cfg(all(test, feature = "file"))]
+mod stored_tests;
 #[cfg(test)]
 mod tests;

@@ -3,10 +3,10 @@ use proptest::prelude::*;
 use super::*;
 
 /// Xorshift: the same numbers on every machine.
-struct Random(u32);
+pub(super) struct Random(pub(super) u32);
 
 impl Random {
-    fn below(&mut self, count: u32) -> u32 {
+    pub(super) fn below(&mut self, count: u32) -> u32 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 17;
         self.0 ^= self.0 << 5;
@@ -20,7 +20,7 @@ impl Random {
 
 /// What the numbers of a database are like.
 #[derive(Debug, Clone, Copy)]
-enum Kind {
+pub(super) enum Kind {
     /// Small whole numbers: many equal rows, many equal costs, and no rounding.
     Whole,
     /// Every row the same.
@@ -35,7 +35,8 @@ enum Kind {
     Skewed,
 }
 
-const KINDS: [Kind; 6] = [Kind::Whole, Kind::Constant, Kind::Walk, Kind::Extreme, Kind::Tiny, Kind::Skewed];
+pub(super) const KINDS: [Kind; 6] =
+    [Kind::Whole, Kind::Constant, Kind::Walk, Kind::Extreme, Kind::Tiny, Kind::Skewed];
 
 impl Kind {
     fn rows(self, count: usize, dims: usize, random: &mut Random) -> Vec<f32> {
@@ -57,16 +58,16 @@ impl Kind {
 }
 
 /// A database with its indices for every instruction set of this machine.
-struct Case {
-    dims: usize,
-    features: Vec<f32>,
-    candidates: Vec<bool>,
-    tags: Vec<u32>,
-    indices: Vec<Index>,
+pub(super) struct Case {
+    pub(super) dims: usize,
+    pub(super) features: Vec<f32>,
+    pub(super) candidates: Vec<bool>,
+    pub(super) tags: Vec<u32>,
+    pub(super) indices: Vec<Index>,
 }
 
 impl Case {
-    fn new(kind: Kind, count: usize, dims: usize, random: &mut Random) -> Self {
+    pub(super) fn new(kind: Kind, count: usize, dims: usize, random: &mut Random) -> Self {
         let features = kind.rows(count, dims, random);
         let candidates: Vec<bool> = (0..count).map(|_| random.below(8) != 0).collect();
         let tags: Vec<u32> = (0..count).map(|_| random.below(8)).collect();
@@ -76,7 +77,7 @@ impl Case {
     }
 
     /// A frame moved a little, exactly a frame, or a mix of two.
-    fn query_features(&self, random: &mut Random) -> Vec<f32> {
+    pub(super) fn query_features(&self, random: &mut Random) -> Vec<f32> {
         let count = self.candidates.len() as u32;
         if count == 0 {
             return vec![1.0; self.dims];
@@ -91,7 +92,7 @@ impl Case {
     }
 
     /// None, or weights that are all 1, all 0, of everyday size, or of all sizes.
-    fn weights(&self, random: &mut Random) -> Option<Vec<f32>> {
+    pub(super) fn weights(&self, random: &mut Random) -> Option<Vec<f32>> {
         let kind = random.below(6);
         let weight = |_| match kind {
             0 => 1.0,
@@ -104,7 +105,7 @@ impl Case {
     }
 
     /// Asks every index in every way, and holds the answers against brute force.
-    fn check(&self, random: &mut Random) {
+    pub(super) fn check(&self, random: &mut Random) {
         self.check_weighted(None, random);
         let weights = self.weights(random);
         self.check_weighted(weights.as_deref(), random);

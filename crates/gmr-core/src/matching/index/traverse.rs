@@ -8,7 +8,7 @@
 
 use super::best::Best;
 use super::metric::{Metric, STRIDE};
-use super::tree::{Edges, Lanes, Tree};
+use super::tree::{Edges, Lanes, Tree, View};
 use super::{Hit, Query};
 
 /// What an instruction set does with one number of each of `W` frames or boxes at once.
@@ -60,7 +60,7 @@ const FEW_DIMS: usize = 64;
 /// A query and how to lay it against a tree.
 struct Probe<'a, const W: usize, K, M: Metric> {
     kernel: K,
-    tree: &'a Tree<W>,
+    tree: &'a View<'a, W>,
     query: &'a Query<'a>,
     /// The query as the tree lays its dimensions out.
     laid_out: &'a [M::Term],
@@ -88,6 +88,7 @@ pub(super) fn search<const W: usize, K: Kernel<W>, M: Metric>(
     query: &Query,
     best: &mut impl Best,
 ) {
+    let tree = &tree.view();
     let dims = tree.dims();
     let (mut few, mut many) = ([M::Term::default(); FEW_DIMS], Vec::new());
     let laid_out = if dims <= FEW_DIMS {
@@ -96,11 +97,11 @@ pub(super) fn search<const W: usize, K: Kernel<W>, M: Metric>(
         many.resize(dims, M::Term::default());
         &mut many[..]
     };
-    let count = M::lay_out(query, &tree.order, laid_out);
+    let count = M::lay_out(query, tree.order, laid_out);
     // A term is rounded three times at most, and once more wherever it is added.
     let slack = 1.0 + 2.0 * (dims + 3) as f32 * f32::EPSILON;
     let probe = Probe::<W, K, M> { kernel, tree, query, laid_out: &laid_out[..count], slack };
-    match (tree.frames.len(), tree.levels.len().checked_sub(1)) {
+    match (tree.frames.len(), tree.levels.count().checked_sub(1)) {
         (0, _) => {}
         (_, None) => probe.look_at_leaf(0, best),
         (_, Some(top)) => probe.descend(top, best),
@@ -136,20 +137,20 @@ impl<const W: usize, K: Kernel<W>, M: Metric> Probe<'_, W, K, M> {
 
     #[inline(always)]
     fn open(&self, level: usize, node: usize) -> Open<K::Sums> {
-        let mut children = self.tree.children(level, node);
+        let place = self.tree.place(level, node);
+        let mut children = if self.tree.is_sound_node(place) { self.tree.children(level, node) } else { 0 };
         if self.query.tags != 0 {
-            children &= carrying(&self.tree.levels[level].tags[node], self.query.tags);
+            children &= carrying(&self.tree.node_tags[place], self.query.tags);
         }
-        let mut open =
-            Open { bounds: self.bounds(level, node), others: children, nearest: 0, bound: 0.0, node };
+        let mut open = Open { bounds: self.bounds(place), others: children, nearest: 0, bound: 0.0, node };
         self.advance(&mut open);
         open
     }
 
     /// Lower bounds of the costs in the boxes of a node, but for [`Probe::reach`]'s share.
     #[inline(always)]
-    fn bounds(&self, level: usize, node: usize) -> K::Sums {
-        M::bounds(self.kernel, self.laid_out, self.tree.node(level, node))
+    fn bounds(&self, place: usize) -> K::Sums {
+        M::bounds(self.kernel, self.laid_out, self.tree.node(place))
     }
 
     /// Makes the nearest of the other children the nearest.
@@ -171,7 +172,7 @@ impl<const W: usize, K: Kernel<W>, M: Metric> Probe<'_, W, K, M> {
             let lane = open.nearest;
             self.advance(open);
             // Nothing costs less than nothing: then only a lower frame wins.
-            if best.cost > 0.0 || self.tree.levels[level].lowest[open.node][lane] < best.frame {
+            if best.cost > 0.0 || self.lowest(level, open.node)[lane] < best.frame {
                 if open.bound <= reach {
                     self.fetch(level, open.node * W + open.nearest);
                 }
@@ -186,17 +187,25 @@ impl<const W: usize, K: Kernel<W>, M: Metric> Probe<'_, W, K, M> {
     fn fetch(&self, level: usize, child: usize) {
         match level.checked_sub(1) {
             None => self.kernel.fetch(&self.tree.leaf(child)[..self.tree.dims().min(2 * STRIDE)]),
-            Some(below) => self.kernel.fetch(self.tree.node(below, child)),
+            Some(below) => self.kernel.fetch(self.tree.node(self.tree.place(below, child))),
         }
     }
 
     #[inline(always)]
+    fn lowest(&self, level: usize, node: usize) -> &[u32; W] {
+        &self.tree.lowest[self.tree.place(level, node)]
+    }
+
+    #[inline(always)]
     fn look_at_leaf(&self, leaf: usize, best: &mut impl Best) {
+        if !self.tree.is_sound_leaf(leaf) {
+            return;
+        }
         let rows = self.tree.leaf(leaf);
         if M::are_too_far(self.kernel, self.laid_out, rows, self.reach(best.bound().cost)) {
             return;
         }
-        let costs = M::costs(self.kernel, self.query, &self.tree.places, rows);
+        let costs = M::costs(self.kernel, self.query, self.tree.places, rows);
         let mut near = self.kernel.at_most(costs, best.bound().cost);
         while near != 0 {
             let (lane, cost) = self.kernel.lowest(costs, near);

@@ -5,7 +5,13 @@
 //! the edges of each of `W` boxes. Dimensions are laid out widest first, for what a few of them rule out need not be
 //! read further.
 
-use super::aligned::Aligned;
+use std::ops::Range;
+#[cfg(feature = "file")]
+use std::sync::Arc;
+
+use super::super::column::Column;
+#[cfg(feature = "file")]
+use super::seal::Seals;
 
 /// One number of each of `W` frames.
 pub(super) type Lanes<const W: usize> = [f32; W];
@@ -13,35 +19,111 @@ pub(super) type Lanes<const W: usize> = [f32; W];
 /// Lower (low half) and upper edge (high half) of each of `W` boxes in one dimension, rounded outwards: see [`edges`].
 pub(super) type Edges<const W: usize> = [u32; W];
 
-/// Leaves and the levels of nodes above them.
+/// Leaves and the nodes above them.
 #[derive(Debug, Clone)]
-pub(super) struct Tree<const W: usize> {
+pub(in super::super) struct Tree<const W: usize> {
     /// The dimensions as they are laid out.
     pub(super) order: Vec<u32>,
     /// Where each dimension is laid out: the inverse of `order`.
     pub(super) places: Vec<u32>,
+    pub(super) levels: Levels,
     /// Leaves x dims x `W`.
-    pub(super) rows: Aligned<f32>,
+    pub(super) rows: Column<f32>,
     /// Frames of each leaf, ascending; `u32::MAX` behind the last.
-    pub(super) frames: Vec<[u32; W]>,
+    pub(super) frames: Column<[u32; W]>,
     /// Tag bits of each of them.
-    pub(super) tags: Vec<[u32; W]>,
-    /// The level above the leaves first, the root's last; none where one leaf holds all.
-    pub(super) levels: Vec<Level<W>>,
+    pub(super) tags: Column<[u32; W]>,
+    /// Nodes x dims x `W`.
+    pub(super) boxes: Column<u32>,
+    /// Lowest frame in each box of each node.
+    pub(super) lowest: Column<[u32; W]>,
+    /// All bits that the frames in each box of each node carry.
+    pub(super) node_tags: Column<[u32; W]>,
+    /// Of a tree in a file: what each of its blocks must sum up to.
+    #[cfg(feature = "file")]
+    pub(super) seals: Option<Arc<Seals>>,
 }
 
-/// Nodes of `W` boxes, and what a search may ask of the frames in each.
+/// How many nodes there are on each level: the level above the leaves first, the root's last; none where one leaf holds
+/// all. They lie one level after the other.
 #[derive(Debug, Clone)]
-pub(super) struct Level<const W: usize> {
-    /// Nodes x dims x `W`.
-    pub(super) boxes: Aligned<u32>,
-    /// Lowest frame in each box.
-    pub(super) lowest: Vec<[u32; W]>,
-    /// All bits that the frames in each box carry.
-    pub(super) tags: Vec<[u32; W]>,
+pub(super) struct Levels {
+    leaf_count: usize,
+    /// The first node of each level, and one past the last.
+    starts: Vec<usize>,
+}
+
+impl Levels {
+    /// The levels above so many leaves, `width` children to a node.
+    pub(super) fn above(leaf_count: usize, width: usize) -> Self {
+        let (mut starts, mut below) = (vec![0], leaf_count);
+        while below > 1 {
+            below = below.div_ceil(width);
+            starts.push(starts[starts.len() - 1] + below);
+        }
+        Self { leaf_count, starts }
+    }
+
+    pub(super) fn leaf_count(&self) -> usize {
+        self.leaf_count
+    }
+
+    pub(super) fn node_count(&self) -> usize {
+        self.starts[self.count()]
+    }
+
+    /// How many levels there are.
+    pub(super) fn count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// The nodes of a level.
+    #[inline(always)]
+    pub(super) fn nodes(&self, level: usize) -> Range<usize> {
+        self.starts[level]..self.starts[level + 1]
+    }
+
+    /// Nodes on the level below, or leaves.
+    #[inline(always)]
+    pub(super) fn below(&self, level: usize) -> usize {
+        level.checked_sub(1).map_or(self.leaf_count, |below| self.nodes(below).len())
+    }
+}
+
+/// A tree as a search sees it: where its numbers lie, whatever keeps them.
+pub(super) struct View<'a, const W: usize> {
+    pub(super) order: &'a [u32],
+    pub(super) places: &'a [u32],
+    pub(super) levels: &'a Levels,
+    pub(super) frames: &'a [[u32; W]],
+    pub(super) tags: &'a [[u32; W]],
+    pub(super) lowest: &'a [[u32; W]],
+    pub(super) node_tags: &'a [[u32; W]],
+    pub(super) rows: &'a [f32],
+    pub(super) boxes: &'a [u32],
+    #[cfg(feature = "file")]
+    seals: Option<&'a Seals>,
 }
 
 impl<const W: usize> Tree<W> {
+    pub(super) fn view(&self) -> View<'_, W> {
+        View {
+            order: &self.order,
+            places: &self.places,
+            levels: &self.levels,
+            frames: &self.frames,
+            tags: &self.tags,
+            lowest: &self.lowest,
+            node_tags: &self.node_tags,
+            rows: &self.rows,
+            boxes: &self.boxes,
+            #[cfg(feature = "file")]
+            seals: self.seals.as_deref(),
+        }
+    }
+}
+
+impl<const W: usize> View<'_, W> {
     pub(super) fn dims(&self) -> usize {
         self.order.len()
     }
@@ -49,25 +131,52 @@ impl<const W: usize> Tree<W> {
     /// The frames of a leaf, `W` side by side in every dimension.
     #[inline(always)]
     pub(super) fn leaf(&self, leaf: usize) -> &[Lanes<W>] {
-        block(self.rows.as_slice(), leaf, self.dims())
+        block(self.rows, leaf, self.dims())
     }
 
     /// The boxes of a node, `W` side by side in every dimension.
     #[inline(always)]
-    pub(super) fn node(&self, level: usize, node: usize) -> &[Edges<W>] {
-        block(self.levels[level].boxes.as_slice(), node, self.dims())
+    pub(super) fn node(&self, node: usize) -> &[Edges<W>] {
+        block(self.boxes, node, self.dims())
+    }
+
+    /// The node of that place on its level, among all nodes.
+    #[inline(always)]
+    pub(super) fn place(&self, level: usize, node: usize) -> usize {
+        self.levels.starts[level] + node
     }
 
     /// The bits of a node's children: `W` of them, or what is left for the last node of a level.
     #[inline(always)]
     pub(super) fn children(&self, level: usize, node: usize) -> u32 {
-        let below = level.checked_sub(1).map_or(self.frames.len(), |below| self.levels[below].lowest.len());
-        u32::MAX >> (32 - (below - node * W).min(W))
+        u32::MAX >> (32 - (self.levels.below(level) - node * W).min(W))
+    }
+
+    /// Whether a leaf may be looked at. What was found damaged is remembered, so that no answer is given.
+    #[inline(always)]
+    pub(super) fn is_sound_leaf(&self, leaf: usize) -> bool {
+        #[cfg(feature = "file")]
+        if let Some(seals) = self.seals {
+            return seals.is_leaf_sound(self, leaf);
+        }
+        let _ = leaf;
+        true
+    }
+
+    /// As [`View::is_sound_leaf`], of the node of this number among all.
+    #[inline(always)]
+    pub(super) fn is_sound_node(&self, node: usize) -> bool {
+        #[cfg(feature = "file")]
+        if let Some(seals) = self.seals {
+            return seals.is_node_sound(self, node);
+        }
+        let _ = node;
+        true
     }
 }
 
 #[inline(always)]
-fn block<T, const W: usize>(values: &[T], place: usize, dims: usize) -> &[[T; W]] {
+pub(super) fn block<T, const W: usize>(values: &[T], place: usize, dims: usize) -> &[[T; W]] {
     values[place * dims * W..][..dims * W].as_chunks().0
 }
 

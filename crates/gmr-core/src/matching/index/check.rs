@@ -1,0 +1,95 @@
+//! Whether an index is that of some rows, in full: every number of it is looked at.
+
+use super::build::nodes_above;
+use super::tree::{Tree, View};
+use super::{Index, IndexError, Layout};
+use crate::error::ShapeError;
+
+/// What an index is held against.
+struct Truth<'a> {
+    features: &'a [f32],
+    candidates: &'a [bool],
+    tags: &'a [u32],
+}
+
+impl Index {
+    /// Whether searches of this index find what a look at every row would find. Reads all of the index and all
+    /// candidates: an index in memory is right as it was built, one in a file is as right as the file.
+    ///
+    /// `features` holds frames x `dims` numbers, `candidates` and `tags` one entry a frame.
+    ///
+    /// # Errors
+    /// When an array's length does not fit, a part of the file is not as it was saved, or the index is another one
+    /// than that of these rows.
+    pub fn check(&self, features: &[f32], candidates: &[bool], tags: &[u32]) -> Result<(), IndexError> {
+        ShapeError::check("features", self.frame_count.saturating_mul(self.dims), features.len())?;
+        ShapeError::check("candidates", self.frame_count, candidates.len())?;
+        ShapeError::check("tags", self.frame_count, tags.len())?;
+        let truth = Truth { features, candidates, tags };
+        let found = match &self.layout {
+            Layout::Scalar(tree) => truth.check(tree),
+            #[cfg(target_arch = "x86_64")]
+            Layout::Sse2(tree) => truth.check(tree),
+            #[cfg(target_arch = "x86_64")]
+            Layout::Avx2(_, tree) => truth.check(tree),
+            #[cfg(target_arch = "x86_64")]
+            Layout::Avx512(_, tree) => truth.check(tree),
+            #[cfg(target_arch = "aarch64")]
+            Layout::Neon(tree) => truth.check(tree),
+            #[cfg(all(feature = "file", target_arch = "x86_64"))]
+            Layout::Sse2Twice(tree) => truth.check(tree),
+            #[cfg(all(feature = "file", target_arch = "aarch64"))]
+            Layout::NeonTwice(tree) => truth.check(tree),
+        };
+        // Damage says more than what it leads to.
+        self.check_soundness()?;
+        found.map_err(|what| IndexError::Contrary { what })
+    }
+}
+
+impl Truth<'_> {
+    fn check<const W: usize>(&self, tree: &Tree<W>) -> Result<(), String> {
+        let tree = &tree.view();
+        let mut met = vec![false; self.candidates.len()];
+        for leaf in 0..tree.levels.leaf_count() {
+            self.check_leaf(tree, leaf, &mut met)?;
+        }
+        if let Some(frame) = met.iter().zip(self.candidates).position(|(met, candidate)| met != candidate) {
+            return Err(format!("row {frame} is a candidate that cannot be found"));
+        }
+        if let Some(node) = (0..tree.levels.node_count()).find(|&node| !tree.is_sound_node(node)) {
+            return Err(format!("node {node} is damaged"));
+        }
+        let right = nodes_above(tree.rows, tree.frames, tree.tags, tree.levels, tree.dims());
+        let is_right = right.boxes.as_slice() == tree.boxes
+            && right.lowest == tree.lowest
+            && right.tags == tree.node_tags;
+        is_right.then_some(()).ok_or_else(|| "a box is not around what is below it".to_owned())
+    }
+
+    fn check_leaf<const W: usize>(
+        &self,
+        tree: &View<W>,
+        leaf: usize,
+        met: &mut [bool],
+    ) -> Result<(), String> {
+        if !tree.is_sound_leaf(leaf) {
+            return Err(format!("leaf {leaf} is damaged"));
+        }
+        let dims = tree.dims();
+        for (lane, &frame) in tree.frames[leaf].iter().enumerate().filter(|&(_, &frame)| frame != u32::MAX) {
+            let at = frame as usize;
+            let row = self.features.get(at * dims..(at + 1) * dims).unwrap_or_default();
+            let laid_out = tree.order.iter().zip(tree.leaf(leaf));
+            let is_row = !row.is_empty()
+                && laid_out.clone().all(|(&dim, lanes)| lanes[lane].to_bits() == row[dim as usize].to_bits());
+            if !is_row || tree.tags[leaf][lane] != self.tags[at] {
+                return Err(format!("leaf {leaf} holds other numbers than row {frame}"));
+            }
+            if !self.candidates[at] || std::mem::replace(&mut met[at], true) {
+                return Err(format!("row {frame} can be found twice, or is no candidate"));
+            }
+        }
+        Ok(())
+    }
+}

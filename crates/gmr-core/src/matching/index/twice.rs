@@ -1,0 +1,71 @@
+//! Eight lanes on a machine that has four: for trees in files, which all have eight.
+
+use super::traverse::Kernel;
+use super::tree::{Edges, Lanes};
+
+/// The lower four lanes and the upper four, one after the other.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Twice<K>(pub(super) K);
+
+impl<K: Kernel<4>> Kernel<8> for Twice<K> {
+    type Sums = [K::Sums; 2];
+
+    #[inline(always)]
+    fn zero(self) -> Self::Sums {
+        [self.0.zero(); 2]
+    }
+
+    #[inline(always)]
+    fn difference(self, q: f32, row: &Lanes<8>) -> Self::Sums {
+        let (halves, _) = row.as_chunks::<4>();
+        [self.0.difference(q, &halves[0]), self.0.difference(q, &halves[1])]
+    }
+
+    #[inline(always)]
+    fn gap(self, q: f32, edges: &Edges<8>) -> Self::Sums {
+        let (halves, _) = edges.as_chunks::<4>();
+        [self.0.gap(q, &halves[0]), self.0.gap(q, &halves[1])]
+    }
+
+    #[inline(always)]
+    fn add_squares(self, sums: Self::Sums, difference: Self::Sums) -> Self::Sums {
+        [self.0.add_squares(sums[0], difference[0]), self.0.add_squares(sums[1], difference[1])]
+    }
+
+    #[inline(always)]
+    fn add_squares_fused(self, sums: Self::Sums, difference: Self::Sums) -> Self::Sums {
+        [self.0.add_squares_fused(sums[0], difference[0]), self.0.add_squares_fused(sums[1], difference[1])]
+    }
+
+    #[inline(always)]
+    fn add_weighted_squares(self, sums: Self::Sums, weight: f32, difference: Self::Sums) -> Self::Sums {
+        let add = |half: usize| self.0.add_weighted_squares(sums[half], weight, difference[half]);
+        [add(0), add(1)]
+    }
+
+    #[inline(always)]
+    fn add(self, a: Self::Sums, b: Self::Sums) -> Self::Sums {
+        [self.0.add(a[0], b[0]), self.0.add(a[1], b[1])]
+    }
+
+    #[inline(always)]
+    fn at_most(self, sums: Self::Sums, limit: f32) -> u32 {
+        self.0.at_most(sums[0], limit) | self.0.at_most(sums[1], limit) << 4
+    }
+
+    #[inline(always)]
+    fn lowest(self, sums: Self::Sums, among: u32) -> (usize, f32) {
+        let lower = (among & 15 != 0).then(|| self.0.lowest(sums[0], among & 15));
+        let upper = (among >> 4 != 0).then(|| self.0.lowest(sums[1], among >> 4));
+        match (lower, upper) {
+            (Some(lower), Some((_, least))) if lower.1 <= least => lower,
+            (_, Some((lane, least))) => (lane + 4, least),
+            (lower, None) => lower.unwrap_or((0, f32::INFINITY)),
+        }
+    }
+
+    #[inline(always)]
+    fn fetch<T>(self, block: &[T]) {
+        self.0.fetch(block);
+    }
+}
