@@ -5,14 +5,14 @@ use std::ops::Deref;
 #[cfg(feature = "file")]
 use std::sync::Arc;
 
-use super::aligned::Aligned;
+use super::aligned::{Aligned, Number};
 
 /// A column, not to be changed.
 #[derive(Debug, Clone)]
-pub(super) struct Column<T: Copy + 'static>(Source<T>);
+pub(super) struct Column<T: Number>(Source<T>);
 
 #[derive(Debug, Clone)]
-enum Source<T: Copy + 'static> {
+enum Source<T: Number> {
     Owned(Vec<T>),
     Aligned(Aligned<T>),
     /// The values lie in the map, which they keep alive; they are never handed out for longer than the column lives.
@@ -23,7 +23,7 @@ enum Source<T: Copy + 'static> {
     },
 }
 
-impl<T: Copy> Deref for Column<T> {
+impl<T: Number> Deref for Column<T> {
     type Target = [T];
 
     #[inline(always)]
@@ -37,20 +37,20 @@ impl<T: Copy> Deref for Column<T> {
     }
 }
 
-impl<T: Copy> From<Vec<T>> for Column<T> {
+impl<T: Number> From<Vec<T>> for Column<T> {
     fn from(values: Vec<T>) -> Self {
         Self(Source::Owned(values))
     }
 }
 
-impl<T: Copy> From<Aligned<T>> for Column<T> {
+impl<T: Number> From<Aligned<T>> for Column<T> {
     fn from(values: Aligned<T>) -> Self {
         Self(Source::Aligned(values))
     }
 }
 
 #[cfg(feature = "file")]
-impl<T: Copy> Column<T> {
+impl<T: Number> Column<T> {
     /// What `see` makes of the map: some part of it.
     pub(super) fn mapped<E>(
         map: &Arc<memmap2::Mmap>,

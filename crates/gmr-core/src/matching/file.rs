@@ -387,7 +387,7 @@ impl Opened {
     }
 
     /// An array of this type and shape, where a length may be any.
-    fn column<T: bytemuck::AnyBitPattern>(
+    fn column<T: bytemuck::Pod>(
         &self,
         name: &str,
         dtype: Dtype,
