@@ -60,6 +60,13 @@ def test_turns_are_filled_from_the_one_clip_that_turns_to_both_sides(completed: 
     assert {choice.candidate.mirrored for choice in completed.choices} == {False, True}
 
 
+def test_what_the_completed_dataset_still_lacks_is_told(completed: Completion) -> None:
+    lacking = [sentence for sentence in sentences(completed) if sentence.startswith("Even so, ")]
+    of_its_own = [sentence.lower() for sentence in completed.after.verdict.sentences]
+    assert len(lacking) == (not completed.trials["held_after"].all())
+    assert all(sentence.removeprefix("Even so, ").lower() in of_its_own for sentence in lacking)
+
+
 def test_each_choice_takes_away_cost_and_loses_no_trial(completed: Completion) -> None:
     assert completed.before.simulation is not None
     log = completed.before.simulation.logs["time"]

@@ -45,8 +45,9 @@ def _in_order(choices: tuple[Choice, ...]) -> str:
         for choice in choices[:_TOLD]
     ]
     more = f" and {len(choices) - _TOLD} more" if len(choices) > _TOLD else ""
+    which = "It" if len(choices) == 1 else "In this order each"
     return (
-        f"In this order each took away most per second recorded: {', '.join(told)}{more}; what the trials "
+        f"{which} took away most per second recorded: {', '.join(told)}{more}; what the trials "
         f"lack of holding fell by {percent(1 - choices[-1].cost_after / choices[0].cost_before)}."
     )
 

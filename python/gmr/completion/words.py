@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from gmr.completion.choice_words import from_folder
 from gmr.completion.complete import Completion
-from gmr.completion.holes import Ask
+from gmr.completion.holes import Ask, grid_of
+from gmr.evaluation.failure_sentences import capture_sentences
 from gmr.evaluation.figures.wording import asked, metres
+from gmr.evaluation.regions import failures
 from gmr.evaluation.words import count, duration, percent, some_of
 
 __all__ = ["change_sentence", "headline", "sentences"]
@@ -48,7 +50,7 @@ def headline(of: Completion) -> str:
 def sentences(of: Completion) -> tuple[str, ...]:
     """What stands behind the headline, in reading order."""
     how = from_folder(of) if of.source else _made(of)
-    return tuple(filter(None, (*how, _open(of), _worse(of), *_played(of), *of.noticed)))
+    return tuple(filter(None, (*how, _open(of), _to_capture(of), _worse(of), *_played(of), *of.noticed)))
 
 
 def change_sentence(of: Completion) -> str:
@@ -83,6 +85,15 @@ def _open(of: Completion) -> str:
     return f"Still open: {_places(of, still)}."
 
 
+def _to_capture(of: Completion) -> str:
+    """What the completed dataset still lacks, as its own verdict has it."""
+    if not of.added or _held(of, "after").all():
+        return ""
+    grid = grid_of(of.after)
+    first = next(capture_sentences(grid, failures(grid), of.after.summary.mirrored_count > 0))
+    return f"Even so, {first[0].lower()}{first[1:]}"
+
+
 def _worse(of: Completion) -> str:
     if not of.added:
         return ""
@@ -111,7 +122,8 @@ def _played(of: Completion) -> Iterator[str]:
     played = of.clips["played_seconds"]
     total = float(of.after.measured.clips["played_seconds"].sum())
     if total > 0:
-        yield f"The {_clip(of)}s are played {percent(float(played.sum()) / total)} of the time."
+        clips = f"{_clip(of)} is" if len(of.added) == 1 else f"{_clip(of)}s are"
+        yield f"The {clips} played {percent(float(played.sum()) / total)} of the time."
     idle = of.clips["clip"][played == 0].tolist()
     if idle:
         told = count(len(idle), f"{_clip(of)} is", f"{_clip(of)}s are")
