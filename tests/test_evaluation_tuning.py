@@ -188,6 +188,8 @@ def test_what_is_no_better_on_the_held_out_half_is_not_chosen(tuned: Tuning) -> 
     assert better.improves
     assert headline(better).startswith("Weigh the features anew")
     assert "falls by 0.1 m (95% confidence interval 0.01 to 0.2)" in list(sentences(better))[2]
+    same = replace(tuned, gain=Interval(-1e-17, -1e-16, 0.0))
+    assert list(sentences(same))[2].endswith(": nothing changes.")
 
 
 def test_the_section_names_its_figure_and_tables(tuned: Tuning) -> None:

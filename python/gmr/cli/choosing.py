@@ -44,11 +44,16 @@ _OPTIONS: Final = (
         type=click.FloatRange(min=0, min_open=True),
         help="Seconds that the chosen clips may last together.  [default: as long as one helps]",
     ),
-    click.option("--made", is_flag=True, help="Let clips compete that are synthesised for the holes."),
+    click.option(
+        "--made",
+        is_flag=True,
+        help="Let clips that are synthesised for the holes compete with those of the other folder.",
+    ),
     click.option(
         "--retarget",
         is_flag=True,
-        help="Lay clips of another skeleton on the dataset's; else they are refused.",
+        help="Lay clips of the other folder on the dataset's skeleton where theirs is another; else they are "
+        "refused.",
     ),
 )
 

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 
+from gmr.evaluation.intervals import Interval
 from gmr.evaluation.tuning.weights import HELD_OUT, TRAINING, Tuning
 from gmr.evaluation.words import count, listing, number
 
 __all__ = ["headline", "sentences"]
+
+_NOTHING: Final = 1e-6
+"""Metres: less than any recording tells."""
 
 
 def headline(tuning: Tuning) -> str:
@@ -32,6 +37,17 @@ def sentences(tuning: Tuning) -> Iterator[str]:
     )
     yield _of_set(tuning, TRAINING, "On these trials")
     gain = tuning.gain
+    held_out = _of_set(tuning, HELD_OUT, "On those held out").removesuffix(".")
+    if max(map(abs, (gain.low, gain.mean, gain.high))) < _NOTHING:
+        yield f"{held_out}: nothing changes."
+    else:
+        yield f"{held_out}: {_change(gain)}."
+    if not tuning.improves:
+        yield f"What the search found, and what is not to be trusted: {_weights(tuning)}."
+
+
+def _change(gain: Interval) -> str:
+    """How much better the tuned weights do, and how sure that is."""
     falls = "falls" if gain.mean > 0 else "rises"
     bounds = sorted((abs(gain.low), abs(gain.high))) if gain.low * gain.high > 0 else None
     between = (
@@ -39,18 +55,13 @@ def sentences(tuning: Tuning) -> Iterator[str]:
         if bounds
         else f"from {number(max(-gain.low, 0.0))} worse to {number(max(gain.high, 0.0))} better"
     )
-    yield (
-        f"{_of_set(tuning, HELD_OUT, 'On those held out').removesuffix('.')}: it {falls} by "
-        f"{number(abs(gain.mean))} m (95% confidence interval {between})."
-    )
-    if not tuning.improves:
-        yield f"What the search found, and what is not to be trusted: {_weights(tuning)}."
+    return f"it {falls} by {number(abs(gain.mean))} m (95% confidence interval {between})"
 
 
 def _of_set(tuning: Tuning, which: str, where: str) -> str:
     def change(column: str, unit: str) -> str:
         before, after = tuning.mean(which, column), tuning.mean(which, f"{column}_tuned")
-        return f"from {before:.3g} to {after:.3g} {unit}"
+        return f"from {round(before, 6):.3g} to {round(after, 6):.3g} {unit}"
 
     return (
         f"{where} the offset goes {change('offset_mean', 'm')}, the jumping "
