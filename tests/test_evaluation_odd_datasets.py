@@ -242,3 +242,29 @@ def test_clips_of_which_none_could_be_tried_are_not_said_to_be_of_no_help(
     said = told(capsys.readouterr().out)
     assert said.startswith("No clip of archive could be tried: takes does 0 of 1 trials.")
     assert "it can be laid on the dataset's by --retarget" in said
+
+
+def test_clips_of_an_earlier_completion_are_told_from_those_of_this_one(
+    tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    folder = folder_of(tmp_path / "takes", {"turn": TURN})
+    for speed in ("1", "1.5"):
+        arguments = ("--speeds", speed, "--turn-rates", "0", "--quiet")
+        assert finished(command, ["complete", str(folder), *arguments]) == 0
+    said = told(capsys.readouterr().err)
+    assert said.startswith(
+        "gmr: 1 file in completed/clips is no part of this, but there from before: made_1mps"
+    )
+
+
+def test_clips_whose_names_are_no_utf_8_can_be_chosen(
+    tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    folder = folder_of(tmp_path / "takes", {"turn": TURN})
+    archive = folder_of(tmp_path / "archive", {"walk": walker_bvh(Arc(6.0, 1.0))})
+    (archive / "walk.bvh").rename(archive / "w\udcffalk.bvh")
+    assert finished(command, ["complete", str(folder), "--from", str(archive), *SMALL]) == 0
+    assert "1 clip was chosen from archive" in told(capsys.readouterr().out)
+    assert [path.suffix for path in (tmp_path / "completed" / "clips").iterdir()] == [".bvh"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import shutil
 import textwrap
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
@@ -32,6 +32,7 @@ __all__ = [
     "completing_options",
     "completion_summary",
     "completion_words",
+    "earlier_clips",
     "noticed",
     "read_clips",
 ]
@@ -235,6 +236,19 @@ def completion_words(found: Completion) -> str:
     for sentence in sentences(found):
         lines += textwrap.wrap(sentence, width, initial_indent="- ", subsequent_indent="  ")
     return "\n".join(lines)
+
+
+def earlier_clips(found: Completion, folder: Path) -> Iterator[str]:
+    """What else lies where the clips were written, in a sentence."""
+    from gmr.completion.writing import clips_of_before
+    from gmr.evaluation.words import count, some_of
+
+    if earlier := clips_of_before(found, folder):
+        is_ = "is" if len(earlier) == 1 else "are"
+        yield (
+            f"{count(len(earlier), 'file')} in {folder / 'clips'} {is_} no part of this, but there from "
+            f"before: {some_of(earlier, 3)}"
+        )
 
 
 def completion_summary(found: Completion) -> dict[str, Any]:

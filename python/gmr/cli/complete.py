@@ -14,6 +14,7 @@ from gmr.cli.choosing import (
     choosing_options,
     completion_summary,
     completion_words,
+    earlier_clips,
     noticed,
     read_clips,
 )
@@ -148,6 +149,6 @@ def complete(
         )
     else:
         click.echo("\n".join([completion_words(found), "", f"Page: {written}"]))
-    for sentence in left_out(failed):
+    for sentence in (*left_out(failed), *earlier_clips(found, out)):
         say(sentence)
     return 1 if failed or found.refused else 0

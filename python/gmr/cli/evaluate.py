@@ -14,6 +14,7 @@ from gmr.cli.choosing import (
     check_completing,
     complete_folder,
     completing_options,
+    earlier_clips,
 )
 from gmr.cli.cluster_options import check_workers, cluster_options
 from gmr.cli.common import say
@@ -181,7 +182,7 @@ def evaluate(
             progress=phases.tell,
         )
         added: dict[str, Pruned | Tuned | Completed] = {}
-        refused = False
+        refused, earlier = False, list[str]()
         if prune is not None:
             assert isinstance(found, gmr.Evaluation)
             added["pruned"] = prune_folder(
@@ -212,12 +213,13 @@ def evaluate(
                 unit=unit,
             )
             refused = bool(completed.found.refused)
+            earlier = list(earlier_clips(completed.found, completed.folder))
         sections = [each.section() for each in added.values()]
         written = _write(found, None if no_report else out, tables, figures, phases, sections)
     click.echo(as_object(found, written, added) if as_json else in_words(found, written))
     for each in added.values() if not as_json else ():
         click.echo(each.words())
-    for sentence in left_out(found.failed):
+    for sentence in (*left_out(found.failed), *earlier):
         say(sentence)
     return 1 if found.failed or refused else 0
 

@@ -14,7 +14,7 @@ from gmr.formats import write
 from gmr.motion import Motion
 from gmr.replacing import replacing
 
-__all__ = ["write_added", "write_completion"]
+__all__ = ["clips_of_before", "write_added", "write_completion"]
 
 _STRIPS: Final = 3
 """Made clips of which the page shows a film strip: those that are played longest."""
@@ -97,6 +97,15 @@ def write_added(
     return folder
 
 
+def clips_of_before(of: Completion, folder: str | os.PathLike[str]) -> list[str]:
+    """Files in ``clips/`` of a folder that are no part of this completion: of an earlier one, mostly."""
+    clips = Path(folder) / "clips"
+    own = {place for name in of.added for place in (clips / name, _written_as(clips / name))}
+    return sorted(
+        path.relative_to(clips).as_posix() for path in clips.rglob("*") if path.is_file() and path not in own
+    )
+
+
 def _silent(phase: str, done: int, of: int) -> None:
     """Tell nobody."""
 
@@ -107,7 +116,11 @@ def _add(of: Completion, name: str, motion: Motion, clips: Path, source: Path | 
     place = clips / name
     if candidate is None or not candidate.whole:
         write(motion, place)
-    elif source is not None and place.suffix.lower() in _WHOLE_IN_ONE_FILE:
+    elif (
+        source is not None
+        and place.suffix.lower() in _WHOLE_IN_ONE_FILE
+        and (source / candidate.source).is_file()  # it is not, under this name, where that is no UTF-8
+    ):
         with replacing(place) as (file,):
             file.write((source / candidate.source).read_bytes())
     else:
