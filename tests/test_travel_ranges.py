@@ -81,6 +81,13 @@ def test_squashed_angles_keep_their_order_and_their_limits(x: float, y: float) -
         assert squashed(np.array([x]), LOW, HIGH) == x
 
 
+@pytest.mark.parametrize("seed", [313205, 5, 12])
+def test_however_high_a_jump_is_its_hips_stay_in_range(seed: int) -> None:
+    report = library()["jump"].take(None, 60, seed, None, 1.0, height=0.5).report
+    assert not report.beyond_deg
+    assert report.slide_mm < 1
+
+
 @given(x=st.floats(-0.9, 1.1))
 def test_unsquashing_undoes_squashing(x: float) -> None:
     back = unsquashed(squashed(np.array([x]), LOW, HIGH), LOW, HIGH)

@@ -72,7 +72,7 @@ def test_the_point_on_which_a_rigid_foot_stands_rests(asked: tuple[float, float,
     variation=st.sampled_from((0.0, 0.6, 1.0)),
     height=st.sampled_from((1.35, 1.75, 2.0)),
 )
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=10, deadline=None)
 def test_in_every_motion_of_the_library_rigid_feet_stay_where_they_stand(
     name: str, shares: list[float], seed: int, variation: float, height: float
 ) -> None:
@@ -89,6 +89,13 @@ def test_in_every_motion_of_the_library_rigid_feet_stay_where_they_stand(
     if take.performance.travel == "path" and report.speed_asked:
         assert report.speed == pytest.approx(report.speed_asked, rel=0.03)
         assert report.turn_rate_deg == pytest.approx(report.turn_rate_asked_deg, abs=3)
+
+
+def test_a_rigid_leg_whose_hip_goes_far_behind_it_bends() -> None:
+    """A hip that sat down behind a leg that did not give way took its foot 20 cm into the air."""
+    take = library()["walk_and_sit"].take(None, FPS, 186397, Body.of(1.35, detailed=False), 0.6)
+    assert take.report.slide_mm < 1
+    assert take.report.lifted_mm < 100
 
 
 def test_a_rigid_walk_is_held_up_by_a_foot_on_the_ground_at_every_moment() -> None:
@@ -132,7 +139,7 @@ def test_the_pitch_of_a_rocking_foot_is_told_by_its_hip_where_the_knee_is_in_fro
     )
     thigh = -leg.thigh[1] * np.array([np.sin(lean), np.cos(lean)])
     bend = np.arctan2(knee[0], knee[1]) - lean
-    if bend > 0.25:
+    if bend > 0.35:
         hip = knee + thigh
         found = _pitch(leg, point, point[2] + hip[:1], hip[1:])
         assert found[0] == pytest.approx(pitch, abs=1e-6)

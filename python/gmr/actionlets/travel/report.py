@@ -170,7 +170,7 @@ def measured(
                 SIDES[stance.leg],
                 times[stance.first],
                 times[stance.last],
-                1000 * _slide(heels[stance.leg][at], toes[stance.leg][at]),
+                1000 * _slide(heels[stance.leg][at], toes[stance.leg][at], yaw),
                 float(np.degrees(np.ptp(yaw))),
                 1000 * float(np.minimum(heels[stance.leg][at][:, 1], toes[stance.leg][at][:, 1]).max()),
             )
@@ -229,12 +229,26 @@ def _feet_speed(body: Body, planned: Floats, every: Sequence[Stance], fps: float
     return way * fps / steps if steps else 0.0
 
 
-def _slide(heel: Floats, toe: Floats) -> float:
-    """Metres that the lower of heel and toes goes along the ground; that of a flat foot which goes less."""
+def _slide(heel: Floats, toe: Floats, yaw: Floats) -> float:
+    """Metres that the lower of heel and toes goes along the ground; that of a flat foot which goes less.
+
+    Where contact passes from the one to the other between two frames, as it does without sliding when a foot
+    rolls fast, the places of both on the ground are a foot's length apart.
+    """
     ways = [np.linalg.norm(np.diff(point[:, ::2], axis=0), axis=1) for point in (heel, toe)]
+    least = np.minimum(*ways)
     lower = (heel[1:, 1] + heel[:-1, 1]) - (toe[1:, 1] + toe[:-1, 1])
-    flat = np.abs(lower) < 1e-9
-    return float(np.where(flat, np.minimum(*ways), np.where(lower < 0, ways[0], ways[1])).sum())
+    way = np.where(np.abs(lower) < 1e-9, least, np.where(lower < 0, ways[0], ways[1]))
+    on_heel = heel[:, 1] < toe[:, 1]
+    facing, size = (yaw[1:] + yaw[:-1]) / 2, np.linalg.norm(toe[0] - heel[0])
+    foot = size * np.stack([np.sin(facing), np.cos(facing)], axis=1)
+    for passes, one, other, sign in (
+        (on_heel[:-1] & ~on_heel[1:], heel, toe, 1),
+        (~on_heel[:-1] & on_heel[1:], toe, heel, -1),
+    ):
+        apart = (other[1:] - one[:-1])[:, ::2] - sign * foot
+        way = np.where(passes, np.minimum(least, np.linalg.norm(apart, axis=1)), way)
+    return float(way.sum())
 
 
 def _flights(

@@ -41,6 +41,9 @@ _LANDS = 0.08
 _YIELDS, _YIELDING = np.radians(22.0), np.radians(12.0)
 """Radians of the planned knee from which on it gives way to the height of the pelvis, and over which."""
 
+_FOLLOWS = np.radians(10.0)
+"""How many more radians those of a knee are that follows from path and pitch, until it gives way."""
+
 _DESCENT = 0.3
 """Metres that a hip may be higher for each one behind the place at which its foot becomes flat."""
 
@@ -150,8 +153,10 @@ def rocking(one: Footing, knee: Floats, flight: Floats, root: Floats, heading: F
     hip = one.hip[on]
     hip[:, ::2] = root[on][:, ::2] + level(hip[:, ::2], heading[on])
     ahead, _ = _seen(one, hip)
-    yields = np.maximum(smooth_step((knee[on] - _YIELDS) / _YIELDING), flight[on])
     pitch = _bent(one, ahead)
+    follows = -(pitch + _over_knee(one.leg, pitch, ahead)[1])
+    bent_by = np.maximum(knee[on], follows - _FOLLOWS)
+    yields = np.maximum(smooth_step((bent_by - _YIELDS) / _YIELDING), flight[on])
     lean = -(pitch_of(one.nominal.foot[on]) + knee[on])
     length = _length(one.leg, pitch, lean)
     return Rocking(one, pitch, yields, yields * smooth_step((np.abs(lean) - _LIES) / _LYING), length)
