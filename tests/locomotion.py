@@ -90,6 +90,7 @@ def walked(
         "ref_heading": ref_heading,
         "ref_speed": asked[:, :, 0],
         "ref_turn_rate": np.radians(asked[:, :, 1]),
+        "ref_drift": np.zeros(asked.shape[:2]),
         "row": rows,
         "status": np.where(forced, FORCED, np.where(jumped, JUMPED, PLAYED_ON)),
         "cost_pose": 0.25 * searched,

@@ -15,7 +15,7 @@ from playwright.sync_api import Browser, Page
 import gmr
 from browsers import chromium
 from gmr.demo import demo_folder
-from gmr.evaluation import Evaluation
+from gmr.evaluation import Evaluation, Strafe
 from gmr.evaluation.replay import worst_trial
 from gmr.evaluation.replays import Replays
 from gmr.evaluation.report import film as films
@@ -28,7 +28,8 @@ SOME = slice(400, 700)
 
 @pytest.fixture(scope="module")
 def evaluation() -> Evaluation:
-    return gmr.evaluate(demo_folder(), speeds=[1.0, 2.5], turn_rates_deg=[-50.0, 0.0, 50.0])
+    asked = ("constant", "switching", Strafe((1.0,), (90.0,)))
+    return gmr.evaluate(demo_folder(), scenarios=asked, speeds=[1.0, 2.5], turn_rates_deg=[-50.0, 0.0, 50.0])
 
 
 def replays_of(evaluation: Evaluation) -> Replays:
@@ -74,7 +75,7 @@ def unpacked_trial(page: Page, number: int) -> dict[str, NDArray[np.float64]]:
 @pytest.mark.browser
 def test_the_page_plays_what_the_core_played(opened: Page, evaluation: Evaluation) -> None:
     replays = replays_of(evaluation)
-    for number in (0, 5):
+    for number in (0, 5, 12):
         played = replays.trials[number]
         found = unpacked_trial(opened, number)
         path = np.stack([played.x, played.z], axis=1)

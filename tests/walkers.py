@@ -59,13 +59,15 @@ def walker(
     fps: float = 60.0,
     scale: float = 1.0,
     swing: float = 0.5,
+    drift: float = 0.0,
     names: Mapping[str, str] = CMU,
     name: str | None = None,
     unit: float | None = 1.0,
 ) -> Motion:
     """A body that goes at ``speed`` (m/s) and turns at ``turn_rate`` (rad/s, positive to the left).
 
-    Its hips are on the path exactly and face along it; legs and arms swing, the left leg ahead at first.
+    Its hips are on the path exactly and face along it, or go ``drift`` radians to the left of where they
+    face; legs and arms swing, the left leg ahead at first.
     """
     skeleton = body(names, scale)
     t = np.arange(round(seconds * fps) + 1) / fps
@@ -77,7 +79,7 @@ def walker(
         rotations[:, list(_PARENTS).index(f"{side}_up_leg")] = _about_x(-forward)
         rotations[:, list(_PARENTS).index(f"{side}_knee")] = _about_x(0.3 * swing * (1 + np.cos(forward)))
         rotations[:, list(_PARENTS).index(f"{side}_shoulder")] = _about_x(0.6 * forward)
-    ground = arc(t, speed, turn_rate, heading) + start
+    ground = arc(t, speed, turn_rate, heading + drift) + start
     hips = np.stack([ground[:, 0], np.full(len(t), HIPS_HEIGHT), ground[:, 1]], axis=1) * scale
     return Motion.from_pose(skeleton, rotations, hips[:, None], 1 / fps, unit=unit, name=name)
 

@@ -550,7 +550,7 @@ def configure(
 
 def run_trials(
     database: Database,
-    profiles: Sequence[tuple[Sequence[tuple[float, float, float]], float]],
+    profiles: Sequence[tuple[Sequence[tuple[float, float, float, float]], float]],
     tracking: str,
     search_every: float,
     exclude_within: int,
@@ -563,15 +563,15 @@ def run_trials(
     """Trials along reference paths; Ctrl-C ends them.
 
     Args:
-        profiles: one a trial: its ``(duration s, speed m/s, turn rate rad/s)`` and the second from which it
-            counts.
+        profiles: one a trial: its ``(duration s, speed m/s, turn rate rad/s, drift rad)`` and the second
+            from which it counts.
         tracking: "time" or "velocity".
         progress: called now and then with the number of trials done and of all; what it raises ends the run.
 
     Returns:
         Columns ``lengths`` and ``recorded_from`` (trials,), and (trials, steps): ``x z heading ref_x ref_z
-        ref_heading ref_speed ref_turn_rate cost_pose cost_trajectory discontinuity row status``; after the
-        end of a trial NaN, row -1, status 255.
+        ref_heading ref_speed ref_turn_rate ref_drift cost_pose cost_trajectory discontinuity row status``;
+        after the end of a trial NaN, row -1, status 255.
 
     Raises:
         ValueError: when a profile or setting is out of bounds, or no candidate carries the tags.

@@ -51,7 +51,7 @@ fn walks() -> Vec<Walk> {
 }
 
 /// Its whole length at one speed and turn rate, which no walk has.
-const ASKED: Segment = Segment { duration: 8.0, speed: 1.9, turn_rate: 0.4 };
+const ASKED: Segment = Segment { duration: 8.0, speed: 1.9, turn_rate: 0.4, drift: 0.0 };
 
 fn trial(database: &Database) -> TrialLog {
     let profiles = [Profile { segments: vec![ASKED], record_from: 0.0 }];

@@ -45,7 +45,7 @@ fn labels(database: &Database) -> Labels {
 }
 
 fn log(database: &Database) -> String {
-    let segments = vec![Segment { duration: 9.0, speed: 1.4, turn_rate: 0.3 }];
+    let segments = vec![Segment { duration: 9.0, speed: 1.4, turn_rate: 0.3, drift: 0.0 }];
     let (profiles, settings) = ([Profile { segments, record_from: 0.0 }], Settings::default());
     let tracking = Tracking::Time;
     let trials = Trials { database, profiles: &profiles, tracking, settings: &settings, threads: 1 };

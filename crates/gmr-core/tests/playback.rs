@@ -155,8 +155,10 @@ fn a_joint_that_only_carries_the_body_changes_nothing() {
         assert!(Vec3::from(shown).distance(*expected) < 1e-5, "{shown:?} {expected}");
     }
 
-    let profiles =
-        [Profile { segments: vec![Segment { duration: 8.0, speed: 2.0, turn_rate: 0.5 }], record_from: 0.0 }];
+    let profiles = [Profile {
+        segments: vec![Segment { duration: 8.0, speed: 2.0, turn_rate: 0.5, drift: 0.0 }],
+        record_from: 0.0,
+    }];
     let settings = Default::default();
     let [bare, carried] = [&plain, &carried].map(|database| {
         let tracking = Tracking::Time;
@@ -196,7 +198,7 @@ fn a_subset_of_the_joints_has_the_bits_of_the_whole() {
 #[test]
 fn the_poses_of_a_trial_walk_smoothly_beside_its_log() {
     let database = two_gaits();
-    let segment = |duration, speed| Segment { duration, speed, turn_rate: 0.3 };
+    let segment = |duration, speed| Segment { duration, speed, turn_rate: 0.3, drift: 0.0 };
     let profiles = [Profile { segments: vec![segment(4.0, 1.5), segment(4.0, 2.5)], record_from: 0.0 }];
     let settings = Default::default();
     let tracking = Tracking::Time;

@@ -22,8 +22,10 @@ fn various() -> Vec<Walk> {
 }
 
 fn log_of(database: &Database, speed: f64, turn_rate: f64) -> TrialLog {
-    let profiles =
-        [Profile { segments: vec![Segment { duration: 8.0, speed, turn_rate }], record_from: 0.0 }];
+    let profiles = [Profile {
+        segments: vec![Segment { duration: 8.0, speed, turn_rate, drift: 0.0 }],
+        record_from: 0.0,
+    }];
     let settings = Settings::default();
     let tracking = Tracking::Time;
     let trials = Trials { database, profiles: &profiles, tracking, settings: &settings, threads: 1 };

@@ -14,7 +14,7 @@ use proptest::prelude::*;
 use synthetic::{RATE, Walk, database, database_with_a_past};
 
 fn segment(duration: f64, speed: f64, turn_rate: f64) -> Segment {
-    Segment { duration, speed, turn_rate }
+    Segment { duration, speed, turn_rate, drift: 0.0 }
 }
 
 fn constant(speed: f64, turn_rate: f64) -> Profile {

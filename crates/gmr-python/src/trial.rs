@@ -12,8 +12,8 @@ use pyo3::types::PyDict;
 use crate::matching::PyDatabase;
 use crate::watch::watched;
 
-/// `((duration, speed, turn rate), ...)` and the second from which the trial counts.
-type Request = (Vec<(f64, f64, f64)>, f64);
+/// `((duration, speed, turn rate, drift), ...)` and the second from which the trial counts.
+type Request = (Vec<(f64, f64, f64, f64)>, f64);
 
 #[pyfunction(name = "run_trials")]
 #[pyo3(signature = (
@@ -55,7 +55,7 @@ fn run<'py>(
 }
 
 fn profile((segments, record_from): Request) -> Profile {
-    let segment = |(duration, speed, turn_rate)| Segment { duration, speed, turn_rate };
+    let segment = |(duration, speed, turn_rate, drift)| Segment { duration, speed, turn_rate, drift };
     Profile { segments: segments.into_iter().map(segment).collect(), record_from }
 }
 
@@ -76,6 +76,7 @@ fn columns<'py>(py: Python<'py>, logs: &[TrialLog]) -> PyResult<Bound<'py, PyDic
     number("ref_heading", |step| step.reference.heading)?;
     number("ref_speed", |step| step.request.speed)?;
     number("ref_turn_rate", |step| step.request.turn_rate)?;
+    number("ref_drift", |step| step.request.drift)?;
     let cost = |name, of: fn(&LoggedStep) -> f32| put(name, column(py, logs, f32::NAN, of));
     cost("cost_pose", |step| step.choice.cost_pose)?;
     cost("cost_trajectory", |step| step.choice.cost_trajectory)?;

@@ -67,8 +67,9 @@ _OPTIONS = (
         metavar="NAME|FILE",
         multiple=True,
         callback=_chosen,
-        help="What is asked for: constant, switching, both, start-stop, slalom, splines (random paths), or a "
-        "CSV file of path points (x,z or x,z,t or x,z,speed). Repeatable.  [default: both]",
+        help="What is asked for: constant, switching, both, start-stop, slalom, strafe (sideways and "
+        "backwards), splines (random paths), or a CSV file of path points (x,z or x,z,t or x,z,speed). "
+        "Repeatable.  [default: both]",
     ),
     click.option("--seed", type=click.IntRange(min=0), default=0, help="Of the random paths.  [default: 0]"),
     click.option(

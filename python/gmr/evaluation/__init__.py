@@ -9,7 +9,7 @@ from __future__ import annotations
 from gmr.evaluation.comparison import Comparison, comparison_of
 from gmr.evaluation.result import Evaluation, Replay, Summary, Tables, Verdict
 from gmr.evaluation.scenario import Segment, Trial
-from gmr.evaluation.scenarios import PathPoints, Scenario, Slalom, Splines, StartStop
+from gmr.evaluation.scenarios import PathPoints, Scenario, Slalom, Splines, StartStop, Strafe
 from gmr.evaluation.tuning import Tuning, tune
 from gmr.table import Table
 
@@ -23,6 +23,7 @@ __all__ = [
     "Slalom",
     "Splines",
     "StartStop",
+    "Strafe",
     "Summary",
     "Table",
     "Tables",

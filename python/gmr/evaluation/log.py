@@ -19,7 +19,7 @@ FORCED: Final = 3
 
 _DOUBLES: Final = (
     *("x", "z", "heading"),
-    *("ref_x", "ref_z", "ref_heading", "ref_speed", "ref_turn_rate"),
+    *("ref_x", "ref_z", "ref_heading", "ref_speed", "ref_turn_rate", "ref_drift"),
     *("cost_pose", "cost_trajectory", "discontinuity"),
 )
 
@@ -33,6 +33,7 @@ class Log:
         heading: (T, S) radians, forward = (sin, cos) in (x, z).
         ref_x, ref_z, ref_heading: (T, S) the planned path at the same time.
         ref_speed, ref_turn_rate: (T, S) what is asked for from this step to the next, m/s and radians/s.
+        ref_drift: (T, S) radians from the planned heading to the planned way.
         row: (T, S) row of the frame shown; it takes the root to the next step.
         status: (T, S) uint8: PLAYED_ON, KEPT (searched, and stayed), JUMPED, FORCED (jumped at a clip's end).
         cost_pose, cost_trajectory: (T, S) parts of the cost found by a search, NaN where there was none.
@@ -50,6 +51,7 @@ class Log:
     ref_heading: NDArray[np.float64]
     ref_speed: NDArray[np.float64]
     ref_turn_rate: NDArray[np.float64]
+    ref_drift: NDArray[np.float64]
     row: NDArray[np.int64]
     status: NDArray[np.uint8]
     cost_pose: NDArray[np.float64]

@@ -17,6 +17,7 @@ __all__ = [
     "along_and_cross_track",
     "centred_mean",
     "dynamic_error",
+    "facing_error",
     "mean_where",
     "offset",
     "path_speed",
@@ -125,8 +126,19 @@ def along_and_cross_track(log: Log) -> tuple[Steps, Steps]:
         two (T, S) arrays, metres.
     """
     dx, dz = log.x - log.ref_x, log.z - log.ref_z
-    sin, cos = np.sin(log.ref_heading), np.cos(log.ref_heading)
+    way = log.ref_heading + log.ref_drift
+    sin, cos = np.sin(way), np.cos(way)
     return dx * sin + dz * cos, dx * cos - dz * sin
+
+
+def facing_error(log: Log) -> Steps:
+    """How far it faces from where it should at that time.
+
+    Returns:
+        (T, S) radians, 0 to pi.
+    """
+    apart = log.heading - log.ref_heading
+    return np.abs(apart - 2 * np.pi * np.round(apart / (2 * np.pi)))
 
 
 def mean_where(values: Steps, where: Mask) -> PerTrial:

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from gmr.evaluation.drift_sentences import drift_sentence
 from gmr.evaluation.intervals import Interval, mean_interval
 from gmr.evaluation.paths import held_paths
 from gmr.evaluation.regions import Limits
@@ -26,6 +27,8 @@ def path_sentences(trials: Table, coverage: Table, limits: Limits) -> Iterator[s
     for scenario, tracking in sets:
         part = trials.take((trials["scenario"] == scenario) & (trials["tracking"] == tracking))
         yield _sentence(scenario, tracking, part, limits)
+        if tracking == "time":
+            yield from drift_sentence(part)
     off_grid = trials.take(~on_grid(trials))
     if np.any(off_grid["slowest_speed"] < STANDING):
         stood = float(coverage["weight"][coverage["speed"] < STANDING].sum())

@@ -20,14 +20,16 @@ EVERY: Final = 0.25
 
 
 def held_paths(trials: Table, limits: Limits) -> NDArray[np.bool_]:
-    """Which trials hold: on average within the limits of offset (on a timed path), speed and turn rate.
+    """Which trials hold: on average within the limits of offset (on a timed path), speed and turn rate, and
+    of the facing where another way is asked for than ahead.
 
     The speed error is that of the whole trial, as a share of the mean speed asked for: a trial of many
     speeds, or of standing, has none at each speed that would say something.
     """
     timed = trials["tracking"].astype(str) == "time"
+    facing = np.where(trials["drift_deg"] == 0, 0.0, trials["facing_error_deg"])
     return limits.held(
-        trials["speed_error_share"], trials["turn_rate_error_deg"], trials["offset_mean"], timed
+        trials["speed_error_share"], trials["turn_rate_error_deg"], trials["offset_mean"], timed, facing
     )
 
 

@@ -38,12 +38,15 @@ class Limits:
         offset: mean distance from where the path has the character, metres; when tracking "time" only.
         speed: mean error of the speed, as a share of the speed asked for.
         turn_rate_deg: mean error of the turn rate, degrees per second.
+        facing_deg: mean error of the facing, degrees; where another way is asked for than ahead, and when
+            tracking "time", only.
         covered: seconds of the clips in a cell of the grid.
     """
 
     offset: float = 0.5
     speed: float = 0.15
     turn_rate_deg: float = 10.0
+    facing_deg: float = 20.0
     covered: float = 1.0
 
     def held(
@@ -52,11 +55,13 @@ class Limits:
         turn_rate_error_deg: NDArray[np.float64],
         offset: NDArray[np.float64],
         timed: NDArray[np.bool_] | bool,
+        facing_error_deg: NDArray[np.float64] | float = 0.0,
     ) -> NDArray[np.bool_]:
-        """Which trials hold; the offset of those that are not ``timed`` does not count."""
+        """Which trials hold; offset and facing of those that are not ``timed`` do not count."""
         near = np.abs(speed_error_share) <= self.speed
         near &= np.abs(turn_rate_error_deg) <= self.turn_rate_deg
-        return np.asarray(near & (np.logical_not(timed) | (offset <= self.offset)))
+        placed = np.asarray(offset <= self.offset) & (facing_error_deg <= self.facing_deg)
+        return np.asarray(near & (np.logical_not(timed) | placed))
 
 
 @dataclass(frozen=True, slots=True)

@@ -60,11 +60,16 @@ MOST_TRIALS: Final = 2_000
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A stretch of a planned path: ``seconds`` long, at one speed (m/s) and one turn rate (degrees/s)."""
+    """A stretch of a planned path: ``seconds`` long, at one speed (m/s) and one turn rate (degrees/s).
+
+    ``drift_deg`` is the angle from where the character faces to where it goes, degrees, positive to the left:
+    0 is ahead, 90 sideways to the left, 180 backwards.
+    """
 
     seconds: float
     speed: float
     turn_rate_deg: float
+    drift_deg: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +122,12 @@ class Trial:
     def seconds(self) -> float:
         """Length of the whole trial."""
         return math.fsum(segment.seconds for segment in self.segments)
+
+    @property
+    def drift_deg(self) -> float:
+        """The one drift that is asked for while it is recorded, degrees; NaN where there are several."""
+        drifts = {part.drift_deg for part in _recorded(self.segments, self.recorded_from)}
+        return drifts.pop() if len(drifts) == 1 else math.nan
 
     @property
     def slowest(self) -> float:

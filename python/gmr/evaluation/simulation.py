@@ -18,7 +18,7 @@ __all__ = ["Simulation", "frames_of", "log_of", "profile_of", "simulated"]
 
 _COLUMNS: Final = (
     *("lengths", "recorded_from", "x", "z", "heading", "ref_x", "ref_z", "ref_heading", "ref_speed"),
-    *("ref_turn_rate", "row", "status", "cost_pose", "cost_trajectory", "discontinuity"),
+    *("ref_turn_rate", "ref_drift", "row", "status", "cost_pose", "cost_trajectory", "discontinuity"),
 )
 
 
@@ -105,7 +105,12 @@ def profile_of(trial: Trial) -> Profile:
     """A trial as the core runs it."""
     return Profile(
         tuple(
-            Segment(segment.seconds, segment.speed, float(np.radians(segment.turn_rate_deg)))
+            Segment(
+                segment.seconds,
+                segment.speed,
+                float(np.radians(segment.turn_rate_deg)),
+                float(np.radians(segment.drift_deg)),
+            )
             for segment in trial.segments
         ),
         trial.recorded_from,

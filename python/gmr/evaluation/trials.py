@@ -15,7 +15,7 @@ from gmr.evaluation.scenario import Trial
 from gmr.evaluation.transitions import FORCED_END, INTER_CLIP, INTRA_CLIP, Transitions
 from gmr.table import Table
 
-__all__ = ["speed_error_share", "trials_table"]
+__all__ = ["facing_error_deg", "speed_error_share", "trials_table"]
 
 
 def trials_table(
@@ -65,8 +65,15 @@ def trials_table(
             **_switches(trials),
             "path": np.array([trial.path for trial in trials], object),
             "slowest_speed": np.array([trial.slowest for trial in trials]),
+            "drift_deg": np.array([trial.drift_deg for trial in trials], np.float64),
+            "facing_error_deg": facing_error_deg(log),
         }
     )
+
+
+def facing_error_deg(log: Log) -> NDArray[np.float64]:
+    """(T,) how far a trial faces from where it should, mean, degrees."""
+    return np.degrees(mean_where(metrics.facing_error(log), log.recorded))
 
 
 def _switches(trials: Sequence[Trial]) -> dict[str, NDArray[np.float64]]:

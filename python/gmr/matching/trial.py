@@ -33,13 +33,16 @@ class Segment:
 
     Attributes:
         duration: seconds, above 0.
-        speed: metres a second along the heading.
+        speed: metres a second along the way.
         turn_rate: radians a second, positive to the left.
+        drift: radians from the heading, which way it faces, to the way that it goes, positive to the left: 0
+            is ahead, pi backwards.
     """
 
     duration: float
     speed: float
     turn_rate: float
+    drift: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +150,7 @@ class TrialLog:
         x, z: float64, where the root stood, as playback puts it (inertialisation smooths what is drawn only).
         heading: float64, not wrapped.
         ref_x, ref_z, ref_heading: float64, where it should have stood at that time.
-        ref_speed, ref_turn_rate: float64, what was asked for at that time.
+        ref_speed, ref_turn_rate, ref_drift: float64, what was asked for at that time.
         row: int64, the database row shown.
         status: uint8, a :class:`Status`.
         cost_pose, cost_trajectory: float32, the row's squared weighted distance to the query over the pose
@@ -170,6 +173,7 @@ class TrialLog:
     ref_heading: NDArray[np.float64]
     ref_speed: NDArray[np.float64]
     ref_turn_rate: NDArray[np.float64]
+    ref_drift: NDArray[np.float64]
     row: NDArray[np.int64]
     status: NDArray[np.uint8]
     cost_pose: NDArray[np.float32]
@@ -223,7 +227,7 @@ def run_trials(
     asked = tuple(profiles)
     columns = _core.run_trials(
         database.core,
-        [([(s.duration, s.speed, s.turn_rate) for s in p.segments], p.record_from) for p in asked],
+        [([(s.duration, s.speed, s.turn_rate, s.drift) for s in p.segments], p.record_from) for p in asked],
         tracking,
         search_every,
         exclude_within,

@@ -17,7 +17,7 @@ from gmr.evaluation import metrics
 from gmr.evaluation.regions import Limits
 from gmr.evaluation.scenario import Trial
 from gmr.evaluation.simulation import Simulation, log_of
-from gmr.evaluation.trials import speed_error_share
+from gmr.evaluation.trials import facing_error_deg, speed_error_share
 from gmr.matching.database import Database
 from gmr.matching.trial import Status, TrialLog
 
@@ -98,7 +98,8 @@ def outcomes_of(log: TrialLog, trials: Sequence[Trial]) -> Outcomes:
     offset = np.full(len(log), np.nan)
     if timed:
         offset = metrics.mean_where(metrics.offset(seen), seen.recorded)
-    held = LIMITS.held(share, turn_error, offset, timed)
+    ahead = np.array([trial.drift_deg == 0 for trial in trials], bool)
+    held = LIMITS.held(share, turn_error, offset, timed, np.where(ahead, 0.0, facing_error_deg(seen)))
     landed = (log.status == Status.JUMPED) | (log.status == Status.FORCED_AT_END)
     if landed.shape[1]:
         landed[:, 0] = True
@@ -154,6 +155,7 @@ def same_bits(simulation: Simulation, logs: Sequence[TrialLog]) -> NDArray[np.bo
 
 _COMPARED = (
     *("x", "z", "heading", "ref_x", "ref_z", "ref_heading", "ref_speed", "ref_turn_rate"),
+    "ref_drift",
     *("row", "status", "cost_pose", "cost_trajectory", "discontinuity"),
 )
 

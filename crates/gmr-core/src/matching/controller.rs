@@ -92,7 +92,7 @@ impl Course<'_> {
     fn request_switches(&self) -> bool {
         let request = |time| {
             let segment = self.path.segment(self.path.active(time));
-            (segment.speed, segment.turn_rate)
+            (segment.speed, segment.turn_rate, segment.drift)
         };
         request(self.time()) != request(self.time() - 1.0 / self.rate)
     }

@@ -1,11 +1,13 @@
 //! Reference paths: speed and turn rate constant piece by piece, in closed form.
 //!
 //! From a start `p0` with heading `th0`, at speed `v` and turn rate `w`,
-//! `p(t) = p0 + v t sinc(w t / 2) [sin(th0 + w t / 2), cos(th0 + w t / 2)]`, heading `th0 + w t`.
+//! `p(t) = p0 + v t sinc(w t / 2) [sin(th0 + d + w t / 2), cos(th0 + d + w t / 2)]`, heading `th0 + w t`; `d` is the
+//! angle from where somebody faces to where they go, 0 for whoever walks ahead.
 //! No radius appears, so a straight line is the case w = 0; each piece starts where the one before ends, so a change
 //! of speed moves nothing. Source: Abichequer Sangalli et al., "A new framework for the evaluation of locomotive
 //! motion datasets through motion matching techniques", section 3.4, with v = radius w written without the radius.
 
+use std::f64::consts::TAU;
 use std::fmt;
 
 use super::ground::{Placement, direction, sin_cos};
@@ -15,10 +17,12 @@ use super::ground::{Placement, direction, sin_cos};
 pub struct Segment {
     /// Seconds, above 0.
     pub duration: f64,
-    /// Metres a second along the heading.
+    /// Metres a second along the way.
     pub speed: f64,
     /// Radians a second, positive to the left.
     pub turn_rate: f64,
+    /// Radians from the heading to the way, positive to the left: 0 is ahead, half a turn is backwards.
+    pub drift: f64,
 }
 
 /// A path made of segments; the last goes on for ever.
@@ -82,7 +86,7 @@ pub fn arc(start: Placement, segment: &Segment, time: f64) -> Placement {
     let half_turn = 0.5 * segment.turn_rate * time;
     let chord = segment.speed * time * sinc(half_turn);
     Placement {
-        position: start.position + direction(start.heading + half_turn) * chord,
+        position: start.position + direction(start.heading + segment.drift + half_turn) * chord,
         heading: start.heading + segment.turn_rate * time,
     }
 }
@@ -112,6 +116,7 @@ fn check(segments: &[Segment]) -> Result<(), PathError> {
         bound("duration", segment.duration, segment.duration > 0.0 && seconds <= MAX_SECONDS)?;
         bound("speed", segment.speed, segment.speed.abs() <= MAX_SPEED)?;
         bound("turn rate", segment.turn_rate, segment.turn_rate.abs() <= MAX_TURN_RATE)?;
+        bound("drift", segment.drift, segment.drift.abs() <= TAU)?;
     }
     Ok(())
 }
@@ -139,7 +144,8 @@ impl fmt::Display for PathError {
             Self::OutOfBounds { index, what, found } => write!(
                 f,
                 "segment {index} of the path has {what} {found}; durations are above 0 s and sum to at most \
-                 {MAX_SECONDS} s, speeds are within {MAX_SPEED} m/s, turn rates within {MAX_TURN_RATE} rad/s"
+                 {MAX_SECONDS} s, speeds are within {MAX_SPEED} m/s, turn rates within {MAX_TURN_RATE} rad/s, drifts \
+                 within a turn"
             ),
         }
     }
@@ -152,11 +158,11 @@ mod tests {
     use super::*;
     use glam::DVec2;
     use proptest::prelude::*;
-    use std::f64::consts::TAU;
 
     fn segments() -> impl Strategy<Value = Vec<Segment>> {
-        let segment = (0.05..4.0_f64, -2.0..5.0_f64, prop_oneof![Just(0.0), -3.0..3.0_f64, -1e-6..1e-6_f64])
-            .prop_map(|(duration, speed, turn_rate)| Segment { duration, speed, turn_rate });
+        let turn_rate = prop_oneof![Just(0.0), -3.0..3.0_f64, -1e-6..1e-6_f64];
+        let segment = (0.05..4.0_f64, -2.0..5.0_f64, turn_rate, prop_oneof![Just(0.0), -4.0..4.0_f64])
+            .prop_map(|(duration, speed, turn_rate, drift)| Segment { duration, speed, turn_rate, drift });
         prop::collection::vec(segment, 1..5)
     }
 
@@ -165,7 +171,7 @@ mod tests {
             .prop_map(|(x, z, heading)| Placement { position: DVec2::new(x, z), heading })
     }
 
-    /// Midpoint rule, the velocity being speed times the direction of the heading.
+    /// Midpoint rule, the velocity being speed times the direction of the way.
     fn integrate(start: Placement, segments: &[Segment], time: f64, steps_a_piece: usize) -> Placement {
         let mut place = start;
         let mut left = time;
@@ -175,7 +181,8 @@ mod tests {
             let dt = span / steps_a_piece as f64;
             for _ in 0..steps_a_piece {
                 let middle = place.heading + 0.5 * dt * segment.turn_rate;
-                place.position += DVec2::new(middle.sin(), middle.cos()) * segment.speed * dt;
+                let way = middle + segment.drift;
+                place.position += DVec2::new(way.sin(), way.cos()) * segment.speed * dt;
                 place.heading += segment.turn_rate * dt;
             }
             left -= span;
@@ -209,7 +216,7 @@ mod tests {
 
         #[test]
         fn a_vanishing_turn_rate_is_the_straight_line(start in start(), speed in 0.0..5.0, turn_rate in -1e-9..1e-9_f64) {
-            let bent = arc(start, &Segment { duration: 1.0, speed, turn_rate }, 10.0);
+            let bent = arc(start, &Segment { duration: 1.0, speed, turn_rate, drift: 0.0 }, 10.0);
             let straight = start.position + direction(start.heading) * speed * 10.0;
             prop_assert!((bent.position - straight).length() < 1e-6);
         }
@@ -218,7 +225,7 @@ mod tests {
         fn a_full_turn_closes_the_circle_and_half_of_one_spans_its_diameter(
             start in start(), speed in 0.1..5.0, turn_rate in prop_oneof![0.1..3.0, -3.0..-0.1_f64],
         ) {
-            let segment = Segment { duration: 1.0, speed, turn_rate };
+            let segment = Segment { duration: 1.0, speed, turn_rate, drift: 0.0 };
             let turn = TAU / f64::abs(turn_rate);
             let diameter = 2.0 * speed / f64::abs(turn_rate);
             prop_assert!((arc(start, &segment, turn).position - start.position).length() < 1e-12 * diameter.max(1.0));
@@ -236,13 +243,21 @@ mod tests {
 
     #[test]
     fn a_positive_turn_rate_bends_towards_positive_x() {
-        let segment = Segment { duration: 1.0, speed: 1.0, turn_rate: 1.0 };
+        let segment = Segment { duration: 1.0, speed: 1.0, turn_rate: 1.0, drift: 0.0 };
         assert!(arc(Placement::default(), &segment, 0.5).position.x > 0.0);
     }
 
     #[test]
+    fn whoever_drifts_to_the_left_goes_to_positive_x_and_faces_ahead() {
+        let segment = Segment { duration: 1.0, speed: 2.0, turn_rate: 0.0, drift: TAU / 4.0 };
+        let place = arc(Placement::default(), &segment, 1.5);
+        assert!((place.position - DVec2::new(3.0, 0.0)).length() < 1e-12);
+        assert_eq!(place.heading, 0.0);
+    }
+
+    #[test]
     fn a_segment_begins_at_its_first_moment() {
-        let segment = |speed| Segment { duration: 3.0, speed, turn_rate: 0.0 };
+        let segment = |speed| Segment { duration: 3.0, speed, turn_rate: 0.0, drift: 0.0 };
         let path = ReferencePath::new(Placement::default(), &[segment(1.0), segment(2.0)]).unwrap();
         assert_eq!(
             [path.active(-1.0), path.active(2.999), path.active(3.0), path.active(99.0)],
@@ -253,7 +268,7 @@ mod tests {
 
     #[test]
     fn numbers_that_make_no_path_are_refused_by_name() {
-        let good = Segment { duration: 1.0, speed: 1.0, turn_rate: 0.0 };
+        let good = Segment { duration: 1.0, speed: 1.0, turn_rate: 0.0, drift: 0.0 };
         let refused = |bad| ReferencePath::new(Placement::default(), &[good, bad]).unwrap_err();
         for (bad, name) in [
             (Segment { duration: 0.0, ..good }, "duration"),
@@ -261,6 +276,7 @@ mod tests {
             (Segment { duration: f64::NAN, ..good }, "duration"),
             (Segment { speed: f64::NAN, ..good }, "speed"),
             (Segment { turn_rate: 200.0, ..good }, "turn rate"),
+            (Segment { drift: f64::NAN, ..good }, "drift"),
         ] {
             assert!(matches!(refused(bad), PathError::OutOfBounds { index: 1, what, .. } if what == name));
         }

@@ -90,7 +90,7 @@ mod tests {
         fn on_the_reference_both_ask_for_the_same(
             speed in 0.0..4.0, turn_rate in -2.0..2.0, time in 0.0..30.0, ahead in 0.0..1.0,
         ) {
-            let segment = Segment { duration: 99.0, speed, turn_rate };
+            let segment = Segment { duration: 99.0, speed, turn_rate, drift: 0.0 };
             let path = ReferencePath::new(Placement::default(), &[segment]).unwrap();
             let [closed, open] = [Tracking::Time, Tracking::Velocity].map(|t| t.target(&path, time, &path.at(time), ahead));
             prop_assert!((closed.position - open.position).length() < 1e-12);
@@ -102,7 +102,7 @@ mod tests {
     fn closed_loop_asks_to_catch_up_and_open_loop_does_not() {
         let path = ReferencePath::new(
             Placement::default(),
-            &[Segment { duration: 9.0, speed: 2.0, turn_rate: 0.0 }],
+            &[Segment { duration: 9.0, speed: 2.0, turn_rate: 0.0, drift: 0.0 }],
         )
         .unwrap();
         let late = Placement { position: DVec2::new(1.0, -3.0), heading: 0.0 };
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn a_switch_is_foreseen_in_closed_loop_only() {
-        let segment = |speed| Segment { duration: 1.0, speed, turn_rate: 0.0 };
+        let segment = |speed| Segment { duration: 1.0, speed, turn_rate: 0.0, drift: 0.0 };
         let path = ReferencePath::new(Placement::default(), &[segment(1.0), segment(3.0)]).unwrap();
         let target = |tracking: Tracking| tracking.target(&path, 0.5, &path.at(0.5), 1.0).position.y;
         assert_eq!([target(Tracking::Time), target(Tracking::Velocity)], [2.0, 1.0]);

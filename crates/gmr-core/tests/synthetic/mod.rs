@@ -134,7 +134,7 @@ impl Walk {
 
     /// The body in a world of its own that is no trial's.
     fn pose(&self, time: f64, offsets: &[[f64; 3]]) -> Pose {
-        let segment = Segment { duration: 1.0, speed: self.speed, turn_rate: self.turn_rate };
+        let segment = Segment { duration: 1.0, speed: self.speed, turn_rate: self.turn_rate, drift: 0.0 };
         let root = arc(Placement::new(4.0, -7.0, 1.0), &segment, time);
         let phase = std::f64::consts::TAU * self.cadence * time;
         let swing = 0.5 * phase.sin();

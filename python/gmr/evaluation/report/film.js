@@ -35,16 +35,16 @@ function rangesOf({ rows }, stride) {
   });
 }
 
-/* The place of a plan, after `time` seconds, of [seconds, speed, turn rate] one after the other. */
+/* The place of a plan, after `time` seconds, of [seconds, speed, turn rate, drift] one after the other. */
 function planned(segments, time) {
   let x = 0, z = 0, heading = 0, left = time;
-  segments.forEach(([seconds, speed, rate], k) => {
+  segments.forEach(([seconds, speed, rate, drift], k) => {
     const spent = k === segments.length - 1 ? left : Math.min(left, seconds);
     if (spent <= 0) return;
     const half = (rate * spent) / 2;
     const way = speed * spent * (Math.abs(half) < 1e-9 ? 1 : Math.sin(half) / half);
-    x += way * Math.sin(heading + half);
-    z += way * Math.cos(heading + half);
+    x += way * Math.sin(heading + drift + half);
+    z += way * Math.cos(heading + drift + half);
     heading += 2 * half;
     left -= spent;
   });

@@ -117,7 +117,12 @@ def _told(played: PlayedTrial, index: int, rate: float) -> dict[str, Any]:
         "sentence": replay_sentence(played),
         "start": [float(played.x[0]), float(played.z[0]), float(played.heading[0])],
         "segments": [
-            [segment.seconds, segment.speed, float(np.radians(segment.turn_rate_deg))]
+            [
+                segment.seconds,
+                segment.speed,
+                float(np.radians(segment.turn_rate_deg)),
+                float(np.radians(segment.drift_deg)),
+            ]
             for segment in trial.segments
         ],
     }

@@ -40,7 +40,8 @@ def terms(summary: Summary) -> str:
 
 
 def _words(name: str) -> str:
-    return name.removesuffix("_deg").replace("_", " ") + (", deg/s" if name.endswith("_deg") else "")
+    unit = ", deg/s" if "rate" in name else ", degrees"
+    return name.removesuffix("_deg").replace("_", " ") + (unit if name.endswith("_deg") else "")
 
 
 def _setting(value: Any) -> str:

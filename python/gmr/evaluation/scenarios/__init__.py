@@ -1,8 +1,8 @@
 """Scenarios: what a character is asked to do, as a name and a list of trials.
 
 The paper's two, constant and switching, ask for every cell of a grid of speeds and turn rates. The others ask
-for single paths: standing, walking and standing again; weaving to left and right; random smooth paths; the
-points of a file. Whatever has a ``name`` and ``trials()`` is a scenario.
+for single paths: standing, walking and standing again; weaving to left and right; going sideways and
+backwards; random smooth paths; the points of a file. Whatever has a ``name`` and ``trials()`` is a scenario.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from gmr.evaluation.scenarios.protocol import Scenario
 from gmr.evaluation.scenarios.slalom import Slalom
 from gmr.evaluation.scenarios.splines import Splines
 from gmr.evaluation.scenarios.start_stop import StartStop
+from gmr.evaluation.scenarios.strafe import Strafe
 
 __all__ = [
     "OnGrid",
@@ -22,6 +23,7 @@ __all__ = [
     "Slalom",
     "Splines",
     "StartStop",
+    "Strafe",
     "asked_trials",
     "on_grid",
     "scenarios_of",

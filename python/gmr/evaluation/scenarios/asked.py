@@ -16,6 +16,7 @@ from gmr.evaluation.scenarios.protocol import Scenario
 from gmr.evaluation.scenarios.slalom import Slalom
 from gmr.evaluation.scenarios.splines import Splines
 from gmr.evaluation.scenarios.start_stop import StartStop
+from gmr.evaluation.scenarios.strafe import Strafe
 
 __all__ = ["NAMED", "asked_trials", "scenarios_of"]
 
@@ -93,6 +94,7 @@ NAMED: Final[dict[str, Callable[[OnGrid, int], Scenario]]] = {
     **{name: lambda grid, seed, name=name: replace(grid, name=name) for name in SCENARIOS},  # type: ignore[misc]
     "start-stop": lambda grid, seed: StartStop(_some(grid.speeds, 5)),
     "slalom": _slalom,
+    "strafe": lambda grid, seed: Strafe(_some(grid.speeds, 3)[:2]),
     "splines": _splines,
 }
 """Scenarios by name, from the grid and a seed."""
@@ -165,6 +167,7 @@ _BOUNDS: Final = {
     "seconds": _Bound(1e-6, 3600.0, "s"),
     "speed": _Bound(0.0, FASTEST, "m/s"),
     "turn_rate_deg": _Bound(-STEEPEST, STEEPEST, "degrees/s"),
+    "drift_deg": _Bound(-180.0, 180.0, "degrees"),
 }
 
 
