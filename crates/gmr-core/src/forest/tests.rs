@@ -185,6 +185,19 @@ proptest! {
     }
 
     #[test]
+    fn lengths_of_rotations_do_not_drift_however_often_roots_move(case in any_case()) {
+        let mut motion = case.motion();
+        for step in case.moves.iter().cycle().take(10 * case.moves.len()) {
+            if let Some(forest) = moved(&motion.forest, *step) {
+                motion = case.carried(Isa::current(), 1, &motion, &forest);
+            }
+        }
+        for q in motion.rotations.as_chunks::<4>().0 {
+            prop_assert!((crate::rotation::dot(*q, *q) - 1.0).abs() <= 1e-14, "{q:?}");
+        }
+    }
+
+    #[test]
     fn the_configuration_alone_determines_the_motion(case in any_case()) {
         let home = case.motion();
         let mut motion = home.clone();

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::plan::Plan;
 use super::roots::Parts;
 use super::source::{Quaternions, Rows, Source};
-use super::{ForwardKinematics, Pose, World};
+use super::{ForwardKinematics, Pose, World, scalar};
 use crate::lanes::rows::{self, TargetRows, blocks};
 use crate::lanes::{Kernel, Lanes, Real};
 use crate::rotation::{multiply, rotate};
@@ -29,6 +29,10 @@ impl<T: Real> Kernel<T> for Frames<'_, '_, T> {
             Pose::Quaternions { .. } => each_block(Quaternions::<L>::new(self.job, self.plan, &[]), self),
             Pose::Rows { .. } => each_block(Rows::<L>::new(self.job, self.plan, &[]), self),
         }
+    }
+
+    fn run_plain(self) {
+        scalar::run(self.job, self.plan, self.parts, self.frames, self.world);
     }
 }
 

@@ -135,10 +135,10 @@ pub fn forward_kinematics_on<T: Real>(
     for_each_piece(job.frame_count.div_ceil(piece.max(1)), job.threads, |index| {
         let frames = index * piece..job.frame_count.min((index + 1) * piece);
         let world = World { positions: take(&positions, index), rotations: take(&rotations, index) };
-        match isa {
-            _ if is_copied => parts.copy_all(job, frames, world),
-            Isa::Scalar => scalar::run(job, &plan, &parts, frames, world),
-            _ => T::dispatch(isa, Frames { job, plan: &plan, parts: &parts, frames, world, is_large }),
+        if is_copied {
+            parts.copy_all(job, frames, world);
+        } else {
+            T::dispatch(isa, Frames { job, plan: &plan, parts: &parts, frames, world, is_large });
         }
     });
     Ok(())

@@ -99,6 +99,14 @@ pub trait Kernel<T: Real> {
     /// Does the work with registers `L`. To be marked `#[inline(always)]`, as all that it calls with registers:
     /// only then is it compiled for the instruction set that it is dispatched to.
     fn run<L: Lanes<Real = T>>(self);
+
+    /// Does the work in plain numbers. A kernel whose definition stands by itself runs that.
+    fn run_plain(self)
+    where
+        Self: Sized,
+    {
+        self.run::<T>();
+    }
 }
 
 /// `f32` or `f64`: a number, and a register of one lane.

@@ -10,11 +10,13 @@ use std::arch::aarch64::{
 use super::Kernel;
 
 /// Runs a kernel of `f32`.
+#[inline(never)]
 pub(super) fn run_f32(kernel: impl Kernel<f32>) {
     kernel.run::<F32x4>();
 }
 
 /// Runs a kernel of `f64`.
+#[inline(never)]
 pub(super) fn run_f64(kernel: impl Kernel<f64>) {
     kernel.run::<F64x2>();
 }

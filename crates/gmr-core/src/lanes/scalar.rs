@@ -95,10 +95,8 @@ impl Doubles for f64 {
 macro_rules! dispatch {
     ($real:ident, $run:ident) => {
         fn dispatch(isa: Isa, kernel: impl Kernel<$real>) {
-            if !isa.is_available() {
-                return kernel.run::<$real>();
-            }
             match isa {
+                isa if !isa.is_available() => kernel.run_plain(),
                 #[cfg(target_arch = "x86_64")]
                 // SAFETY: the machine has AVX-512 F, DQ, BW and VL, as just checked.
                 Isa::Avx512 => unsafe { super::avx512::$run(kernel) },
@@ -109,7 +107,7 @@ macro_rules! dispatch {
                 Isa::Sse2 => super::sse2::$run(kernel),
                 #[cfg(target_arch = "aarch64")]
                 Isa::Neon => super::neon::$run(kernel),
-                _ => kernel.run::<$real>(),
+                _ => kernel.run_plain(),
             }
         }
     };

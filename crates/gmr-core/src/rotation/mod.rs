@@ -18,7 +18,7 @@ pub(crate) use euler_block::EulerBlock;
 pub(crate) use quaternion::cross;
 pub use quaternion::{
     IDENTITY_F32, IDENTITY_F64, conjugate, dot, exp, log, multiply, multiply_axis, multiply_inverse,
-    normalize, rotate, rotate_inverse,
+    normalize, rotate, rotate_inverse, straighten,
 };
 pub use slerp::{slerp, slerp_frames};
 pub use turn_slots::turn_slots;

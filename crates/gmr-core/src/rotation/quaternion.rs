@@ -84,6 +84,17 @@ pub fn normalize<L: Lanes>(q: [L; 4]) -> [L; 4] {
     [q[0] * inverse, q[1] * inverse, q[2] * inverse, q[3] * inverse]
 }
 
+/// `q`, whose length is one but for rounding, made one more exactly: Newton's step for `|q| = 1`.
+///
+/// A chain of rotations adds up what their lengths are off, and rotations solved from chains would hand it on.
+#[inline(always)]
+#[must_use]
+pub fn straighten<L: Lanes>(q: [L; 4]) -> [L; 4] {
+    let half = L::splat(L::Real::from_f64(0.5));
+    let scale = L::splat(L::Real::from_f64(1.5)) - half * dot(q, q);
+    [q[0] * scale, q[1] * scale, q[2] * scale, q[3] * scale]
+}
+
 /// The rotation by `v`: about its direction, by its length in radians.
 #[must_use]
 pub fn exp<T: Real>(v: impl Into<[T; 3]>) -> [T; 4] {

@@ -5,11 +5,11 @@ use std::ops::Range;
 use super::arrangement::{Run, WINDOW};
 use super::bones::{self, Bones};
 use super::skin::Points;
-use super::{Skin, SkinError, block, scalar};
+use super::{Skin, SkinError, block};
 use crate::Isa;
 use crate::error::ShapeError;
 use crate::kinematics::{Piece, take};
-use crate::lanes::{Real, cache};
+use crate::lanes::cache;
 use crate::parallel::for_each_piece;
 
 /// Which of `q` and `-q` an influence adds to the sum: the one that points as...
@@ -109,10 +109,7 @@ pub fn blend_on(isa: Isa, job: &Blend<'_>, out: Blended<'_>) -> Result<(), SkinE
             })
             .collect();
         let work = Work { skin: job.skin, method: job.method, centers: &centers, windows, is_large };
-        match isa {
-            Isa::Scalar => scalar::run(&work, &mut frames),
-            _ => f32::dispatch(isa, block::Windows { work: &work, frames: &mut frames }),
-        }
+        block::run(isa, &work, &mut frames);
     });
     Ok(())
 }

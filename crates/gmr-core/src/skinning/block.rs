@@ -7,25 +7,33 @@ use super::arrangement::{Arrangement, Follows, Run, WIDEST, WINDOW};
 use super::blend::{Frame, Hemisphere, Method, Work};
 use super::bones::Bones;
 use super::methods::{Blending, Centers, Linear, Pivot, Rest, Running};
+use super::scalar;
 use super::skin::{Points, Skin, Wide};
 use super::sums::{At, Each, Influences, MANY, Same};
-use crate::lanes::{Kernel, Lanes, cache};
+use crate::Isa;
+use crate::lanes::{Kernel, Lanes, Real, cache};
 
-/// The vertices of `work`, in each of some frames.
-pub(super) struct Windows<'a, 'b> {
-    pub(super) work: &'a Work<'b>,
-    pub(super) frames: &'a mut [Frame<'b>],
+/// Works on the vertices of `work` in each frame.
+pub(super) fn run<'b>(isa: Isa, work: &Work<'b>, frames: &mut [Frame<'b>]) {
+    match work.method {
+        Method::Linear => f32::dispatch(isa, Windows(work, frames, Linear)),
+        Method::DualQuaternion(Hemisphere::Pivot) => f32::dispatch(isa, Windows(work, frames, Pivot)),
+        Method::DualQuaternion(Hemisphere::Running) => f32::dispatch(isa, Windows(work, frames, Running)),
+        Method::Centers(_) => f32::dispatch(isa, Windows(work, frames, Centers)),
+    }
 }
 
-impl Kernel<f32> for Windows<'_, '_> {
+/// The vertices of the work in each of some frames, by a method.
+struct Windows<'a, 'b, M>(&'a Work<'b>, &'a mut [Frame<'b>], M);
+
+impl<M: Blending> Kernel<f32> for Windows<'_, '_, M> {
     #[inline(always)]
     fn run<L: Lanes<Real = f32>>(self) {
-        match self.work.method {
-            Method::Linear => each_window::<L, Linear>(self),
-            Method::DualQuaternion(Hemisphere::Pivot) => each_window::<L, Pivot>(self),
-            Method::DualQuaternion(Hemisphere::Running) => each_window::<L, Running>(self),
-            Method::Centers(_) => each_window::<L, Centers>(self),
-        }
+        each_window::<L, M>(self.0, self.1);
+    }
+
+    fn run_plain(self) {
+        scalar::run(self.0, self.1);
     }
 }
 
@@ -72,8 +80,7 @@ impl Room {
 }
 
 #[inline(always)]
-fn each_window<L: Lanes<Real = f32>, M: Blending>(windows: Windows<'_, '_>) {
-    let Windows { work, frames } = windows;
+fn each_window<L: Lanes<Real = f32>, M: Blending>(work: &Work<'_>, frames: &mut [Frame<'_>]) {
     let mut room = Room::new(work.skin, frames.iter().any(|frame| frame.normals.is_some()));
     for (start, runs) in work.windows() {
         let end = work.skin.vertex_count.min(start + WINDOW);

@@ -3,12 +3,13 @@
 use std::ops::Range;
 
 use super::plan::{Plan, Turn, Vector};
+use super::scalar;
 use crate::kinematics::block::{groups, solve, write};
 use crate::kinematics::source::{Quaternions, Rows, Source};
 use crate::kinematics::{ForwardKinematics, Pose, World};
 use crate::lanes::rows::{TargetRows, blocks};
 use crate::lanes::{Kernel, Lanes, Real};
-use crate::rotation::{multiply_inverse, rotate_inverse};
+use crate::rotation::{multiply_inverse, rotate_inverse, straighten};
 
 /// The frames of a job that one thread works on.
 pub(super) struct Frames<'a, 'b, T> {
@@ -34,6 +35,10 @@ impl<T: Real> Kernel<T> for Frames<'_, '_, T> {
             }
         }
     }
+
+    fn run_plain(self) {
+        scalar::run(self.job, self.plan, self.frames, self.out);
+    }
 }
 
 #[inline(always)]
@@ -57,9 +62,9 @@ fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Rea
         for (q, turn) in turned.iter_mut().zip(&plan.turns) {
             *q = match *turn {
                 Turn::Copy(slot) => source.rotation(slot),
-                Turn::World(own) => rotations[own],
-                Turn::Between(above, own) => multiply_inverse(rotations[above], rotations[own]),
-                Turn::Back(above) => multiply_inverse(rotations[above], identity),
+                Turn::World(own) => straighten(rotations[own]),
+                Turn::Between(above, own) => straighten(multiply_inverse(rotations[above], rotations[own])),
+                Turn::Back(above) => straighten(multiply_inverse(rotations[above], identity)),
             };
         }
         for (v, vector) in moved.iter_mut().zip(&plan.vectors) {

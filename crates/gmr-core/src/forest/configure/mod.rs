@@ -121,10 +121,7 @@ pub fn configure_on<T: Real>(
             rotations: kinematics::take(&rotations, index),
             positions: kinematics::take(&translations, index),
         };
-        match isa {
-            Isa::Scalar => scalar::run(&solving, &plan, frames, out),
-            _ => T::dispatch(isa, Frames { job: &solving, plan: &plan, frames, out, is_large }),
-        }
+        T::dispatch(isa, Frames { job: &solving, plan: &plan, frames, out, is_large });
     });
     Ok(())
 }

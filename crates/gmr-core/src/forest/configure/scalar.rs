@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::plan::{Plan, Turn, Vector};
 use crate::kinematics::{ForwardKinematics, World, scalar};
 use crate::lanes::Real;
-use crate::rotation::{multiply_inverse, rotate_inverse};
+use crate::rotation::{multiply_inverse, rotate_inverse, straighten};
 
 /// Works on `frames`; `out` has room for these only.
 pub(super) fn run<T: Real>(
@@ -24,9 +24,11 @@ pub(super) fn run<T: Real>(
             room.iter_mut().zip(&plan.turns).for_each(|(q, turn)| {
                 *q = match *turn {
                     Turn::Copy(slot) => scalar::local_rotation(job, frame, slot),
-                    Turn::World(own) => rotations[own],
-                    Turn::Between(above, own) => multiply_inverse(rotations[above], rotations[own]),
-                    Turn::Back(above) => multiply_inverse(rotations[above], identity),
+                    Turn::World(own) => straighten(rotations[own]),
+                    Turn::Between(above, own) => {
+                        straighten(multiply_inverse(rotations[above], rotations[own]))
+                    }
+                    Turn::Back(above) => straighten(multiply_inverse(rotations[above], identity)),
                 };
             });
         }
