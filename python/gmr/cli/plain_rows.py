@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from gmr.table import Table
+if TYPE_CHECKING:
+    from gmr.table import Table
 
 __all__ = ["plain_row", "plain_rows"]
 
