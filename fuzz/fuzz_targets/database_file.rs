@@ -124,7 +124,7 @@ fn use_all_of(database: &Database) {
     }
     // What trials ask for is bounded by their length; a file's rate multiplies it.
     if database.rate() <= 240.0 {
-        let segments = vec![Segment { duration: 0.5, speed: 1.4, turn_rate: 0.3 }];
+        let segments = vec![Segment { duration: 0.5, speed: 1.4, turn_rate: 0.3, drift: 0.0 }];
         let (profiles, settings) = ([Profile { segments, record_from: 0.0 }], Settings::default());
         let trials =
             Trials { database, profiles: &profiles, tracking: Tracking::Time, settings: &settings, threads: 1 };

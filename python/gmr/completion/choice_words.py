@@ -10,7 +10,7 @@ import numpy as np
 
 from gmr.completion.choosing import Choice
 from gmr.completion.complete import Completion
-from gmr.evaluation.words import count, duration, listing, percent, some_of
+from gmr.evaluation.words import count, duration, percent, some_of
 
 __all__ = ["from_folder"]
 
@@ -35,8 +35,8 @@ def from_folder(of: Completion) -> Iterator[str]:
 
 
 def _kinds(choices: tuple[Choice, ...]) -> str:
-    kinds = Counter(choice.candidate.how for choice in choices)
-    return listing([f"{how} {times}" if len(kinds) > 1 else how for how, times in kinds.most_common()])
+    kinds = Counter(choice.candidate.how for choice in choices).most_common()
+    return "; ".join(f"{times} {how}" if len(kinds) > 1 else how for how, times in kinds)
 
 
 def _in_order(choices: tuple[Choice, ...]) -> str:
