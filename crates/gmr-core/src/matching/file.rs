@@ -8,12 +8,12 @@
 //! another program that cuts a mapped file short ends the process.
 
 use std::collections::{BTreeMap, HashMap};
-use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
+mod fault;
 mod index;
 
 use memmap2::Mmap;
@@ -30,6 +30,9 @@ use super::index::stored::Arrays;
 use super::normalization::Normalization;
 use super::subset::Left;
 use crate::skeleton::Topology;
+
+use fault::content;
+pub use fault::{Fault, FileError};
 
 /// The string of the container's metadata that tells what the arrays do not.
 const KEY: &str = "gmr_matching";
@@ -437,72 +440,3 @@ impl Opened {
         self.metadata.info(name).ok_or_else(|| content(format!("the array '{name}' is missing")))
     }
 }
-
-/// Why a database cannot be saved or opened.
-#[derive(Debug)]
-pub struct FileError {
-    /// The file.
-    pub path: PathBuf,
-    /// What is wrong with it.
-    pub fault: Fault,
-}
-
-/// What is wrong with a file.
-#[derive(Debug)]
-pub enum Fault {
-    /// The system refuses.
-    Io(io::Error),
-    /// It is no safetensors container.
-    Container(SafeTensorError),
-    /// It is one, but not of a motion database.
-    Content(String),
-    /// It is a motion database as another gmr keeps it.
-    Version {
-        /// The version that it is of.
-        found: u32,
-    },
-    /// The index that is to be saved cannot be made.
-    Index(IndexError),
-}
-
-fn content(what: impl ToString) -> Fault {
-    Fault::Content(what.to_string())
-}
-
-impl From<IndexError> for Fault {
-    fn from(error: IndexError) -> Self {
-        Self::Index(error)
-    }
-}
-
-impl From<serde_json::Error> for Fault {
-    fn from(error: serde_json::Error) -> Self {
-        content(format!("its description is not as it should be: {error}"))
-    }
-}
-
-impl fmt::Display for FileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.path.display(), self.fault)
-    }
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Io(error) => error.fmt(f),
-            Self::Container(error) => {
-                write!(f, "{error}; a saved motion database begins with the header of a safetensors file")
-            }
-            Self::Content(what) => write!(f, "{what}; save the database again"),
-            Self::Version { found } => write!(
-                f,
-                "it is of version {found}, where this gmr reads version {VERSION}; build the database of its clips \
-                 again and save that"
-            ),
-            Self::Index(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for FileError {}
