@@ -7,7 +7,8 @@ most characters, whose vertices mostly follow fewer than four. The worst case is
 vertices follow each four joints at random, in no order.
 
 Every side gets the same float32 numbers, and the answers are compared before anything is timed. What can be
-made ready once (weights as a dense matrix, libigl's matrix) is made ready, on either side.
+made ready once (weights as a dense matrix, libigl's matrix) is made ready, on either side. libigl gives its
+matrix in float64, whatever it is given; beside it stands the same product in float32.
 """
 
 from __future__ import annotations
@@ -59,7 +60,8 @@ def linear(frame_count: int) -> Iterator[Contest]:
     for body in _bodies(frame_count):
         blends = {"numpy, dense": _dense(body.skin), "numpy, gathered": _gathered(body.skin)}
         if "igl" in found:
-            blends[label("igl")] = _libigl(body.skin)
+            blends[label("igl")] = _libigl(body.skin, np.float64)
+            blends[label("igl") + ", its matrix in float32"] = _libigl(body.skin, np.float32)
         peers = {name: _checked(body, "lbs", blend) for name, blend in blends.items()}
         yield _contest(body, "lbs", peers, {} if body.remark else targets, found.absent)
         yield _contest(body, "lbs", normals=True)
@@ -142,14 +144,14 @@ def _gathered(skin: Skin) -> Blend:
     return blend
 
 
-def _libigl(skin: Skin) -> Blend:
-    """``lbs_matrix`` once, then one product a frame."""
+def _libigl(skin: Skin, kind: type[np.float32 | np.float64]) -> Blend:
+    """``lbs_matrix`` once, then one product a frame: in float64, as libigl gives it, or in float32."""
     import igl
 
     matrix = np.ascontiguousarray(
-        igl.lbs_matrix(skin.vertices.astype(np.float64), _dense_weights(skin).astype(np.float64)), np.float32
+        igl.lbs_matrix(skin.vertices.astype(np.float64), _dense_weights(skin).astype(np.float64)), kind
     )
-    return lambda transforms: matrix @ transforms[:, :3].transpose(0, 2, 1).reshape(-1, 3)
+    return lambda transforms: matrix @ transforms[:, :3].transpose(0, 2, 1).reshape(-1, 3).astype(kind)
 
 
 def _numpy_dual_quaternions(skin: Skin) -> Blend:
