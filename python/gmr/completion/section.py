@@ -29,12 +29,11 @@ def completion_section(of: Completion) -> Section:
         lead = element("p", text(LACKING)) if of.source else ""
         content += folded(clips_title(of), lead + clips_table(of, _CLIPS))
     title = f"Its holes filled from {of.source}" if of.source else "Its holes filled"
+    how = "How clips were chosen" if of.source else "How clips were made"
     return Section(
         name="completion",
         title="Completion",
-        html=section(
-            "completion", title, headline(of), content + folded("How clips were chosen", method(of))
-        ),
+        html=section("completion", title, headline(of), content + folded(how, method(of))),
         figures=drawn,
         tables={_TRIALS: of.trials, _CLIPS: of.chosen if of.source else of.clips} if of.added else {},
     )

@@ -16,7 +16,7 @@ from gmr.actionlets.travel.by_turns import carried_by_turns
 from gmr.actionlets.travel.flight import Flights, falling, flights, flying_soon, taken_up
 from gmr.actionlets.travel.footing import Footing, Standing, footing, with_footprints
 from gmr.actionlets.travel.height import carried_stiffly, held_up, kept_bend, lowered, passing
-from gmr.actionlets.travel.leg import BENT, Placed, place_foot
+from gmr.actionlets.travel.leg import Placed, place_foot
 from gmr.actionlets.travel.legs import legs_of, pelvis_shift, pelvis_turn, sole_of
 from gmr.actionlets.travel.mass import mass_from_pelvis
 from gmr.actionlets.travel.path import led, level
@@ -206,9 +206,8 @@ def _lowest(both: Sequence[_Stood], root: Floats, heading: Floats) -> Floats:
     """(F,) height below which legs on the ground do not let the pelvis; -inf where they give way."""
     lowest = np.full(len(root), -np.inf)
     for stood in both:
-        if isinstance(stood, Rocking):
-            on = stood.one.frames
-            lowest[on] = np.maximum(lowest[on], stood.lowest(_hip(stood.one, root, heading)))
+        on = stood.one.frames
+        lowest[on] = np.maximum(lowest[on], stood.lowest(_hip(stood.one, root, heading)))
     return lowest
 
 
@@ -220,12 +219,9 @@ def _upright(both: Sequence[_Stood], ground: Floats, heading: Floats, fps: float
     speed = passing(root, fps)
     for k, stood in enumerate(both):
         one = stood.one
-        bend, hip = _bend(one, speed), _hip(one, root, heading)
-        heights[one.frames, k] = stood.held(hip, bend)
+        heights[one.frames, k] = stood.held(_hip(one, root, heading), _bend(one, speed))
         loads[one.frames, k] = one.loads(fps)
-    for k, stood in enumerate(both):
-        if isinstance(stood, Rocking):
-            stiff[stood.one.frames, k] = 1 - stood.yields
+        stiff[one.frames, k] = stood.stiff
     if stiff.any():
         heights = carried_stiffly(heights, loads, stiff)
     root[:, 1] = held_up(heights, loads, fps)
@@ -241,9 +237,7 @@ def _hip(one: Footing, root: Floats, heading: Floats) -> Floats:
 
 def _bend(one: Footing, speed: Floats) -> Floats:
     """(n,) radians by which a leg on the ground stays bent."""
-    if not one.leg.rigid:
-        return kept_bend(speed[one.frames], one.over)
-    return np.full(len(one.frames), BENT)
+    return kept_bend(speed[one.frames], one.over)
 
 
 def _highest(both: Sequence[_Stood], root: Floats, heading: Floats, fps: float) -> Floats:

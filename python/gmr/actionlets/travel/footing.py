@@ -166,6 +166,15 @@ class Standing:
         """(n,) height that the leg allows the pelvis."""
         return room(self.one.leg.law, hip, self.end, bend)
 
+    @property
+    def stiff(self) -> Floats:
+        """(n,) share by which the leg tells the height of the pelvis and does not give way: none."""
+        return np.zeros(len(self.one.frames))
+
+    def lowest(self, hip: Floats) -> Floats:
+        """(n,) height below which the leg does not let the pelvis: -inf, for its knee bends."""
+        return np.full(len(hip), -np.inf)
+
 
 def footing(
     leg: Leg, sole: Sole, nominal: Placed, hip: Floats, stances: Sequence[Stance], fps: float

@@ -71,6 +71,11 @@ class Rocking:
     length: Floats
     """(n,) of the planned leg, metres from where the foot touches the ground to the hip."""
 
+    @property
+    def stiff(self) -> Floats:
+        """(n,) share by which the leg tells the height of the pelvis and does not give way."""
+        return np.asarray(1 - self.yields, np.float64)
+
     def held(self, hip: Floats, _: Floats | None = None) -> Floats:
         """(n,) height of the pelvis at which the leg ends in a foot of its pitch.
 
@@ -98,9 +103,8 @@ class Rocking:
 
     def lowest(self, hip: Floats) -> Floats:
         """(n,) height below which the leg does not let the pelvis; -inf where its knee gives way."""
-        stiff = 1 - self.yields
-        found = self.held(hip) - _FREE * (1 / np.maximum(stiff, 1e-9) - 1)
-        return np.where(stiff > 0, found, -np.inf)
+        found = self.held(hip) - _FREE * (1 / np.maximum(self.stiff, 1e-9) - 1)
+        return np.where(self.stiff > 0, found, -np.inf)
 
     def angles(self, rows: Rows, pelvis: Floats, root: Floats, heading: Floats) -> Floats:
         """(m, 4) hip flexion, abduction, rotation and knee, in some of the frames on the ground.
