@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import gmr
 from gmr.editing import contacts
-from gmr.evaluation.footing import Ground, Shown, ground_of, jerk_about, shown
+from gmr.evaluation.footing import Ground, Shown, ground_of, jerk_about, shown, slid_while
 from gmr.evaluation.log import Log
 from gmr.evaluation.scenario import constant_trials
 from gmr.evaluation.seen import seen_at_transitions, seen_in_clips, seen_in_trials
@@ -21,7 +21,7 @@ from gmr.evaluation.transitions import transitions_of, transitions_table
 from gmr.matching import Database, Profile, run_trials
 from gmr.matching.trial import TrialLog
 from locomotion import RATE, Arc, frames_of, walked
-from walker import write_walkers
+from walker import walker_bvh, write_walkers
 
 CLIPS = frames_of({"a.bvh": Arc(4.0, 1.0), "b.bvh": Arc(3.0, 2.0)})
 TRIALS = constant_trials((1.0,), (0.0,))
@@ -50,6 +50,57 @@ def test_a_jump_of_acceleration_is_seen_at_its_step() -> None:
     assert np.isnan(jerk_about(places[:5], RATE)).all()
 
 
+@given(st.floats(0.005, 0.3), st.floats(0.5, 3.0), st.sampled_from([60.0, 120.0]))
+def test_a_circle_has_the_jerk_of_its_radius_and_frequency(radius: float, hertz: float, rate: float) -> None:
+    turned = 2 * np.pi * hertz * np.arange(120) / rate
+    places = radius * np.stack([np.cos(turned), 0 * turned, np.sin(turned)], axis=1)[:, None]
+    found = jerk_about(places, rate)[3:-2]
+    # A difference over one step is 2 sin(w dt / 2) / dt times as large, where a derivative is w times.
+    differences = radius * (2 * rate * np.sin(np.pi * hertz / rate)) ** 3
+    np.testing.assert_allclose(found, differences, rtol=1e-6)
+    np.testing.assert_allclose(found, radius * (2 * np.pi * hertz) ** 3, rtol=0.015)
+
+
+def test_a_body_that_sways_has_the_jerk_of_a_sinusoid_whatever_the_rate_of_its_file(tmp_path: Path) -> None:
+    (tmp_path / "walk.bvh").write_text(walker_bvh(Arc(3.0, 1.0), rate=120.0))
+    walk = gmr.read(tmp_path / "walk.bvh")
+    radius, hertz = 4.0, 2.0
+    for rate in (60.0, 120.0):
+        time = np.arange(round(3 * rate)) / rate
+        moves = np.repeat(walk.translations[:1], len(time), axis=0)
+        moves[:, 0, 0] += radius * np.cos(2 * np.pi * hertz * time)
+        moves[:, 0, 1] += radius * np.sin(2 * np.pi * hertz * time)
+        moves[:, 0, 2] += 100 * time
+        still = np.repeat(walk.rotations[:1], len(time), axis=0)
+        swaying = gmr.Motion.from_pose(walk.skeleton, still, moves, 1 / rate, unit=0.01, name="sway")
+        jerk = ground_of(Database.build([swaying])).jerk[3:-2]
+        np.testing.assert_allclose(jerk, radius / 100 * (2 * np.pi * hertz) ** 3, rtol=0.02)
+
+
+STEPS = st.lists(st.booleans(), min_size=1, max_size=60)
+
+
+@given(STEPS, st.floats(0, 1), st.floats(0, 6.28))
+def test_an_even_slide_is_as_long_as_its_path_and_nothing_slides_in_the_air(
+    flags: list[bool], speed: float, way: float
+) -> None:
+    down = np.array(flags)[:, None]
+    time = np.arange(len(flags) + 1) / RATE
+    places = (speed * time[:, None] * np.array([np.cos(way), 0, np.sin(way)]))[:, None]
+    np.testing.assert_allclose(slid_while(down, places, RATE), down * speed / RATE, atol=1e-12)
+
+
+@given(st.integers(10, 120), st.floats(0.001, 0.02), st.sampled_from([60.0, 120.0]))
+def test_a_toe_that_trembles_on_the_spot_slides_a_fifth_of_its_path_at_most(
+    steps: int, tremble: float, rate: float
+) -> None:
+    places = np.zeros((steps + 1, 1, 3))
+    places[::2, 0, 0] = tremble
+    slid = slid_while(np.ones((steps, 1), bool), places, rate)
+    path = steps * tremble
+    assert slid.sum() <= path / 5 + tremble
+
+
 @pytest.fixture(scope="module")
 def walking(tmp_path_factory: pytest.TempPathFactory) -> tuple[Database, Ground, Path]:
     folder = tmp_path_factory.mktemp("takes")
@@ -67,9 +118,9 @@ def test_feet_are_down_where_the_detector_of_motions_says_so(walking: tuple[Data
         expected = contacts(motion, names).mask
         assert expected.any()
         assert np.mean(expected == ground.down[rows]) > 0.99
-        places = motion.positions(joints=names, dtype=np.float64)[..., ::2] / 100
-        ways = np.linalg.norm(np.diff(places, axis=0), axis=2)
-        np.testing.assert_allclose(ground.slid[rows][:-1], ways, atol=1e-5)
+        places = motion.positions(joints=names, dtype=np.float64) / 100
+        stands = ground.down[rows][:-1] & ground.down[rows][1:]
+        np.testing.assert_allclose(ground.slid[rows][:-1], slid_while(stands, places, 60.0), atol=1e-5)
         assert (ground.slid[rows][-1] == 0).all()
 
 
@@ -152,4 +203,5 @@ def test_a_clip_tells_its_own_slide_a_stance_and_never_across_clips() -> None:
     assert columns["stances"].tolist() == [2, 1]
     # Clip a has 241 rows: its last stance is over after ten ways, and 18 are left to clip b.
     np.testing.assert_allclose(columns["foot_slide_mm"], [(10 + 10) / 2, 18])
+    np.testing.assert_allclose(columns["stance_seconds"], [(10 + 10) / 2 / 60, 18 / 60])
     np.testing.assert_allclose(columns["jerk_mean"], 9)

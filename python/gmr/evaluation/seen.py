@@ -55,7 +55,9 @@ def seen_in_trials(log: Log, transitions: Transitions, shown: Shown) -> dict[str
 
 
 def seen_in_clips(ground: Ground, frames: Frames) -> dict[str, Floats | NDArray[np.int64]]:
-    """Columns (C,) of the clips as they were recorded: mm per stance, stances, and jerk, m/s^3."""
+    """Columns (C,) of the clips as they were recorded: mm per stance, stances, jerk, m/s^3, and how long a
+    stance lasts.
+    """
     clips = len(frames.clip_names)
     down = np.zeros(ground.down.shape, bool)
     down[:-1] = ground.down[:-1] & ground.down[1:] & frames.has_next[:-1, None]
@@ -69,6 +71,7 @@ def seen_in_clips(ground: Ground, frames: Frames) -> dict[str, Floats | NDArray[
         "foot_slide_mm": _ratio(1000 * way, stances),
         "stances": stances,
         "jerk_mean": _ratio(jerk, np.bincount(frames.clip[known], minlength=clips)),
+        "stance_seconds": _ratio(np.bincount(frames.clip, down.sum(axis=1), clips) / frames.rate, stances),
     }
 
 

@@ -48,7 +48,7 @@ class Tables:
             ``kind`` is "inter-clip", "intra-clip" or "forced end".
         clips: one row a clip: dataset clip seconds frames mirrored speed_mean turn_rate_mean_deg
             played_seconds played_share used_share
-            foot_slide_mm stances jerk_mean.
+            foot_slide_mm stances jerk_mean stance_seconds.
             See :mod:`gmr.evaluation.seen` for feet and jerk.
             ``played_share`` is of the time of all trials, ``used_share`` of the clip's own frames.
 

@@ -21,6 +21,12 @@ _TERMS: Final = {
     "deviation over the trial",
     "Coverage": "speed and net turn of windows of one second, moved frame by frame, never across clips",
     "Jump": "the next frame shown is not the next of the clip; forced where the clip was over",
+    "Foot slide": "way along the ground of the ball of a foot (the ankle where there are no toes) while the "
+    "clips have it down, summed over a stance; the way is measured over a twelfth of a second, so that a toe "
+    "that trembles on the spot does not count as sliding",
+    "Jerk": "mean over the joints of the third difference of their places at {rate:g} frames per second, the "
+    "largest of the three that reach over a step; of the same motion at twice the rate it may be some times "
+    "as large, for noise of single frames grows with the cube of the rate",
     "Pose gap": "mean distance between the joints of the pose left and of the pose entered, before smoothing",
 }
 
@@ -28,7 +34,7 @@ _TERMS: Final = {
 def terms(summary: Summary) -> str:
     """Terms of the metrics, the joints that were found, and every setting, as a description list."""
     described = {
-        **_TERMS,
+        **{name: term.format(rate=summary.rate) for name, term in _TERMS.items()},
         "Unit of the files": summary.unit,
         "Joints found": ", ".join(f"{_words(role)}: {name}" for role, name in summary.joints.items()),
         **{_words(name).capitalize(): _setting(value) for name, value in summary.settings.items()},
