@@ -188,6 +188,15 @@ def test_what_is_no_better_on_the_held_out_half_is_not_chosen(tuned: Tuning) -> 
     assert better.improves
     assert headline(better).startswith("Weigh the features anew")
     assert "falls by 0.1 m (95% confidence interval 0.01 to 0.2)" in list(sentences(better))[2]
+    least = 0.02 * tuned.mean("held out", "objective")
+    assert tuned.worthwhile == pytest.approx(least)
+    tiny = replace(tuned, gain=Interval(0.9 * least, 0.1 * least, 1.5 * least))
+    assert tiny.beyond_chance
+    assert not tiny.improves
+    assert tiny.chosen is tiny.schema
+    assert "no worthwhile gain" in headline(tiny)
+    assert "not worth it" in list(sentences(tiny))[-1]
+    assert replace(tuned, gain=Interval(1.1 * least, 0.1 * least, 1.5 * least)).improves
     same = replace(tuned, gain=Interval(-1e-17, -1e-16, 0.0))
     assert list(sentences(same))[2].endswith(": nothing changes.")
 

@@ -53,6 +53,7 @@ class Tuned:
             "headline": headline(found),
             "sentences": list(sentences(found)),
             "improves": found.improves,
+            "beyond_chance": found.beyond_chance,
             "weights": dict(found.weights),
             "gain": plain_row(found.gain._asdict()),
             "trials": plain_rows(found.trials),
@@ -72,7 +73,15 @@ def tuning_option(command: Command) -> Command:
 def tune_evaluation(
     evaluation: Evaluation, *, threads: int | None, progress: Callable[[str, int, int], object]
 ) -> Tuned:
-    """Tune the weights for what was evaluated."""
+    """Tune the weights for what was evaluated.
+
+    Raises:
+        GmrError: too few constant trials were asked for.
+    """
+    from gmr.errors import GmrError
     from gmr.evaluation.tuning import tune
 
-    return Tuned(tune(evaluation, threads=threads, progress=progress))
+    try:
+        return Tuned(tune(evaluation, threads=threads, progress=progress))
+    except ValueError as error:
+        raise GmrError(str(error)) from error

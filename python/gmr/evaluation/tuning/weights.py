@@ -33,6 +33,9 @@ __all__ = ["Tuning", "tune"]
 TRAINING: Final = "training"
 HELD_OUT: Final = "held out"
 
+WORTHWHILE: Final = 0.02
+"""Share of the objective below which a gain is not worth other weights, however sure it is."""
+
 
 @dataclass(frozen=True, slots=True)
 class Tuning:
@@ -61,9 +64,20 @@ class Tuning:
     gain: Interval
 
     @property
-    def improves(self) -> bool:
+    def beyond_chance(self) -> bool:
         """Whether the tuned weights do better on the cells that were held out, by more than chance."""
         return bool(self.gain.low > 0)
+
+    @property
+    def worthwhile(self) -> float:
+        """Metres from which on a gain is worth other weights: a fiftieth of the objective of the cells held
+        out, with the weights as they were."""
+        return WORTHWHILE * self.mean(HELD_OUT, "objective")
+
+    @property
+    def improves(self) -> bool:
+        """Whether they do better by more than chance, and by so much that it is worth it."""
+        return self.beyond_chance and bool(self.gain.mean >= self.worthwhile)
 
     @property
     def chosen(self) -> Schema:

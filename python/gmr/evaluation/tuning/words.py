@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 
 from gmr.evaluation.intervals import Interval
-from gmr.evaluation.tuning.weights import HELD_OUT, TRAINING, Tuning
-from gmr.evaluation.words import count, listing, number
+from gmr.evaluation.tuning.weights import HELD_OUT, TRAINING, WORTHWHILE, Tuning
+from gmr.evaluation.words import count, listing, number, percent
 
 __all__ = ["headline", "sentences"]
 
@@ -22,6 +22,12 @@ def headline(tuning: Tuning) -> str:
     if tuning.improves:
         return (
             f"Weigh the features anew: {_weights(tuning)}. Trials that were not tuned on do better with it."
+        )
+    if tuning.beyond_chance:
+        return (
+            "The weights of the features stay as they are: no worthwhile gain. Others do better on trials "
+            f"that were not tuned on, but by {number(tuning.gain.mean)} m, less than {percent(WORTHWHILE)} "
+            f"of their offset and jumping ({number(tuning.worthwhile)} m)."
         )
     return (
         "The weights of the features stay as they are: others do no better on trials that were not tuned on."
@@ -43,7 +49,8 @@ def sentences(tuning: Tuning) -> Iterator[str]:
     else:
         yield f"{held_out}: {_change(gain)}."
     if not tuning.improves:
-        yield f"What the search found, and what is not to be trusted: {_weights(tuning)}."
+        why = "what is not worth it" if tuning.beyond_chance else "what is not to be trusted"
+        yield f"What the search found, and {why}: {_weights(tuning)}."
 
 
 def _change(gain: Interval) -> str:
