@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 
 import gmr
+from gmr.cli.commands import COMMANDS
 from gmr.cli.commands import gmr as command
 from gmr.cli.common import finished
 from gmr.sides import pair_joints
@@ -274,6 +275,15 @@ def test_help_teaches_with_examples(capsys: Captured) -> None:
         assert f"gmr {name} walk.bvh" in page
     assert run("--help") == 0
     assert "Exit codes" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_help_says_what_its_exit_codes_mean(name: str, capsys: Captured) -> None:
+    assert run(name, "--help") == 0
+    page = " ".join(capsys.readouterr().out.split())
+    codes = page[page.index("Exit codes: 0 ") :]
+    for code in (" 1 ", " 2 wrong usage", " 130 "):
+        assert code in codes
 
 
 def test_help_does_not_wait_for_numpy() -> None:

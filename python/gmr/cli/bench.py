@@ -14,6 +14,8 @@ Examples:
   gmr bench                      the whole table
   gmr bench fk bvh-load          two claims of it
   gmr bench --json > here.json   for a machine
+
+Exit codes: 0 done, 1 an input could not be made, 2 wrong usage, 130 interrupted.
 """
 
 

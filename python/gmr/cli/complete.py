@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -22,6 +22,10 @@ from gmr.cli.common import say
 from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.outcome import at_place, left_out, trouble_with_files
 from gmr.cli.progress import Phases
+from gmr.cli.weights import weight_option
+
+if TYPE_CHECKING:
+    from gmr.matching.schema import Schema
 
 __all__ = ["complete"]
 
@@ -74,6 +78,7 @@ named), 2 wrong usage, 130 interrupted.
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of the variation.")
 @evaluation_options
+@weight_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the words.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress.")
 def complete(
@@ -92,6 +97,7 @@ def complete(
     names: dict[str, str],
     unit: float | None,
     threads: int | None,
+    schema: Schema,
     as_json: bool,
     quiet: bool,
 ) -> int:
@@ -116,6 +122,7 @@ def complete(
         "names": names,
         "unit": unit,
         "threads": threads,
+        "schema": schema,
     }
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):

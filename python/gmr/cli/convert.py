@@ -135,6 +135,8 @@ def convert(
       gmr convert - - --fps 30 < walk.bvh > walk30.bvh
       gmr convert walk.bvh walk.x3d         a humanoid of H-Anim that X3D browsers play
       gmr convert walk.c3d walk.bvh         a motion from markers; see gmr info walk.c3d first
+
+    Exit codes: 0 done, 1 some files could not be converted (they are named), 2 wrong usage, 130 interrupted.
     """
     if fitting.as_json and target == STDIO:
         raise click.UsageError(

@@ -57,6 +57,8 @@ def decompose(
       gmr decompose walk.bvh --out score.html        the score, drawn like music
       gmr decompose 07_01.amc --dofs file --joints lfemur,ltibia
       gmr decompose walk.bvh --tolerance 0.5 --json | jq '.dofs["left_knee.flexion"].track'
+
+    Exit codes: 0 done, 1 the file could not be read or taken apart, 2 wrong usage, 130 interrupted.
     """
     from gmr.actionlets.decomposition import decompose as decomposed
 

@@ -19,6 +19,8 @@ def demo(out: Path) -> None:
     """Evaluate the clips that ship with gmr: real walks and runs, and their mirrored copies.
 
     Does what `gmr evaluate FOLDER --mirror` does on a folder of your own.
+
+    Exit codes: 0 done, 1 the report could not be written, 2 wrong usage, 130 interrupted.
     """
     from gmr.cli.evaluate import evaluate
     from gmr.demo import CREDIT, demo_folder

@@ -59,6 +59,8 @@ def info(
       cat walk.bvh | gmr info -
       gmr info walk.c3d                     markers, gaps, flickering and exchanged ones
       gmr info fox.glb                      joints, meshes, materials, animations
+
+    Exit codes: 0 done, 1 some files could not be read (they are named), 2 wrong usage, 130 interrupted.
     """
     failures = Failures()
     paths: list[Path | str] = []

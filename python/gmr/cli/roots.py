@@ -68,6 +68,8 @@ def roots(
       gmr roots walk.bvh --shift Neck --out neck.bvh        the same walk, hanging on its neck
       gmr roots walk.gmr --join LeftHand --out again.gmr
       gmr roots walk.bvh --split Head --out - | gmr roots - --json
+
+    Exit codes: 0 done, 1 the file could not be read, changed so or written, 2 wrong usage, 130 interrupted.
     """
     is_chosen = any((chosen, splits, joins, shifts))
     if out is not None and not is_chosen:

@@ -85,6 +85,8 @@ def skin(
       gmr skin figure.glb take.bvh moving.glb --rest 0    where the file has no rest pose of its own
       gmr skin body.obj walk.bvh walking.glb --bind
       gmr skin figure.glb walk.bvh --compare compared/    a page: what each way of skinning does
+
+    Exit codes: 0 done, 1 a file could not be read, driven or written, 2 wrong usage, 130 interrupted.
     """
     _check(out, compare, no_film)
     from gmr.formats import write_character

@@ -110,6 +110,9 @@ def synthesize(
     gmr synthesize walk,run --variations 1000 --out corpus/
     gmr synthesize walk --variations 600 --out paces/ --set speed=0.8,1.2,1.6 --height 1.5..1.9
     gmr synthesize walk,run --variations 100000 --out big/ --cluster tcp://10.0.0.1:8786
+
+    Exit codes: 0 done, 1 the motion, or some takes of a corpus, could not be made, 2 wrong usage, 130
+    interrupted.
     """
     from gmr.actionlets import library
 

@@ -105,6 +105,9 @@ def view(
       gmr view figure.glb --blending dqbs
       gmr view walk.bvh --character figure.glb
       gmr view walk.bvh --save walk.html            to send to somebody
+
+    Exit codes: 0 the page is written, 1 some files could not be shown (they are named), 2 wrong usage, 130
+    ended by Ctrl-C.
     """
     if page is None and fps is not None:
         raise click.UsageError("--fps is for a page; give --save too")
