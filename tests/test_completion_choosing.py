@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -339,6 +340,43 @@ def test_maps_before_and_after_are_on_one_scale(completed: Completion) -> None:
         assert [before.data["trials"][name].tolist() for name in ("speed", "turn_rate_deg")] == [
             after.data["trials"][name].tolist() for name in ("speed", "turn_rate_deg")
         ]
+
+
+def test_a_folder_to_be_completed_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from gmr.cli.commands import gmr as command
+    from gmr.cli.common import finished
+    from gmr.formats.folder import read_folder
+
+    takes, archive = tmp_path / "takes", tmp_path / "archive"
+    takes.mkdir()
+    archive.mkdir()
+    gmr.write(walker(5, 1.2), takes / "straight.bvh")
+    gmr.write(walker(6, 1.2, LEFT), archive / "left.bvh")
+    (takes / "broken.bvh").write_text("HIERARCHY\n")
+    looked_at = []
+
+    def counted(folder: Path, **options: Any) -> Any:
+        looked_at.append(Path(folder).name)
+        return read_folder(folder, **options)
+
+    monkeypatch.setattr("gmr.evaluation.reading.read_folder", counted)
+    completing = ["--complete-from", str(archive), "--complete-out", str(tmp_path / "out")]
+    asked = ["--speeds", "1.2", "--turn-rates", "0,45", "--scenario", "constant", "--no-report", "-q"]
+    assert finished(command, ["evaluate", str(takes), *completing, *asked]) == 1
+    assert sorted(looked_at) == ["archive", "takes"]
+
+
+def test_weights_of_a_completion_are_those_asked_for(tmp_path: Path) -> None:
+    from gmr.cli.commands import gmr as command
+    from gmr.cli.common import finished
+
+    takes = tmp_path / "takes"
+    takes.mkdir()
+    gmr.write(walker(5, 1.2), takes / "straight.bvh")
+    asked = ["--speeds", "1.2", "--turn-rates", "0", "-q", "-o", str(tmp_path / "out")]
+    assert finished(command, ["complete", str(takes), *asked, "--weight", "hips velocity=7"]) == 0
+    assert "hips velocity: 7" in (tmp_path / "out" / "before.html").read_text(encoding="utf-8")
+    assert finished(command, ["complete", str(takes), *asked, "--weight", "nose=7"]) == 2
 
 
 def test_a_place_for_the_clips_that_cannot_be_is_found_before_the_work(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -49,8 +50,48 @@ def test_the_smaller_dataset_is_written_and_the_report_shows_why(
     assert left["seconds_after"] <= 0.7 * left["seconds_before"]
     assert sorted(gmr.read_folder(out)) == [file["file"] for file in left["files"]]
     page = report.read_text()
+    own = left["runs"]["files_by_themselves"]
+    table = page[page.index('aria-label="What the smaller dataset does"') :]
+    table = table[: table.index("</table>")]
+    assert re.findall(r"<td[^>]*>([^<]*)</td>", table)[-4:] == [
+        "The new folder's files by themselves".replace("'", "&#x27;"),
+        f"{own['offset_mean']:.3f}",
+        str(own["held"]),
+        str(own["runs"]),
+    ]
+    assert "An evaluation of the new folder scales the features by what is left" in page
     for name in ('id="pruning"', 'href="#pruning"', 'data-figure="pruning_offset"', "importance"):
         assert name in page
+
+
+def test_a_pruning_that_cannot_be_costs_neither_report_nor_tables(
+    folder: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    report, tables, out = tmp_path / "report.html", tmp_path / "tables", tmp_path / "smaller"
+    written = ("-o", report, "--tables", tables, "--prune-out", out)
+    assert run(folder, *SMALL, *written, "--prune", "99%", "--quiet") == 1
+    said = capsys.readouterr()
+    assert f"Report: {report}" in said.out
+    assert 'id="pruning"' not in report.read_text()
+    assert (tables / "trials.csv").exists()
+    assert not out.exists()
+    assert said.err.startswith("gmr: --prune came to nothing, all else is done: 99% of the seconds cannot go")
+    assert said.err.count("\n") == 1
+
+
+def test_what_could_not_be_done_is_told_to_machines_too(
+    folder: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    grid = ("--speeds", "1", "--turn-rates", "0", "--scenario", "constant", "--no-report", "--json", "-q")
+    assert run(folder, *grid, "--prune", "lossless", "--tune") == 1
+    said = capsys.readouterr()
+    told = json.loads(said.out)
+    assert list(told["not_done"]) == ["--tune"]
+    assert told["not_done"]["--tune"].startswith("1 constant trials cannot be split")
+    assert "tuned" not in told
+    assert told["pruned"]["identical"] is True
+    assert "--tune came to nothing" in said.err
 
 
 def test_json_has_the_curve_and_the_importance(
@@ -60,6 +101,11 @@ def test_json_has_the_curve_and_the_importance(
     assert run(folder, *SMALL, "--prune", "lossless", "--no-report", "--json", "--quiet") == 0
     found = json.loads(capsys.readouterr().out)["pruned"]
     assert found["identical"] is True
+    assert found["runs"] == {
+        name: score
+        for name, score in json.loads((tmp_path / "pruned" / "manifest.json").read_text())["runs"].items()
+        if name != "simulated"
+    }
     assert found["folder"] == "pruned"
     assert found["curve"][0]["share_kept"] == 1.0
     # Of two alike the first is found.

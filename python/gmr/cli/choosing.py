@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import shutil
 import textwrap
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from gmr.completion import Completion
     from gmr.evaluation import Evaluation
     from gmr.evaluation.reading import Read
+    from gmr.motion import Motion
     from gmr.pages.section import Section
 
 __all__ = [
@@ -35,6 +36,7 @@ __all__ = [
     "earlier_clips",
     "noticed",
     "read_clips",
+    "read_dataset",
 ]
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -135,6 +137,13 @@ def read_clips(folder: Path, threads: int | None, phases: Phases) -> Read:
     )
 
 
+def read_dataset(folder: Path, threads: int | None, phases: Phases) -> Read:
+    """The clips to be evaluated, read as :func:`gmr.evaluate` does."""
+    from gmr.evaluation.reading import read_clips as read
+
+    return read(folder, threads=threads, progress=lambda done, of: phases.tell("reading", done, of))
+
+
 def noticed(reads: Iterable[Read], excluded: Collection[str] = ()) -> tuple[str, ...]:
     """What was odd about files, and which could not be used: not read, or ``excluded`` later."""
     from gmr.evaluation.words import count, some_of
@@ -184,7 +193,7 @@ def check_completing(completing: Completing, phases: Phases) -> None:
 
 def complete_folder(
     evaluation: Evaluation,
-    folder: Path,
+    motions: Mapping[str, Motion],
     completing: Completing,
     phases: Phases,
     *,
@@ -192,11 +201,11 @@ def complete_folder(
     threads: int | None,
     **reading: Any,
 ) -> Completed:
-    """Complete an evaluated folder from another one, and write the clips and the tables.
+    """Complete an evaluated dataset from another one, and write the clips and the tables.
 
     Args:
-        evaluation: of the folder.
-        folder: the dataset.
+        evaluation: of the dataset.
+        motions: the dataset's clips, as they were evaluated.
         completing: what is asked for.
         phases: told of progress.
         report: also write the report of the completed dataset, ``after.html``.
@@ -207,7 +216,7 @@ def complete_folder(
 
     others = read_clips(completing.source, threads, phases)
     found = complete_from(
-        read_clips(folder, threads, phases).motions,
+        motions,
         others.motions,
         source=completing.source.resolve().name,
         dataset=evaluation.dataset,

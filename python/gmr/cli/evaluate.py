@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import click
 
+from gmr.cli.afterwards import Afterwards
 from gmr.cli.choosing import (
-    Completed,
     Completing,
     check_completing,
     complete_folder,
     completing_options,
     earlier_clips,
+    read_dataset,
 )
 from gmr.cli.cluster_options import check_workers, cluster_options
 from gmr.cli.common import say
@@ -22,13 +23,14 @@ from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.evaluation_results import as_object, in_words
 from gmr.cli.outcome import at_place, left_out, trouble_with_files
 from gmr.cli.progress import Phases
-from gmr.cli.pruning import Pruned, check_pruning, prune_folder, pruning_options
+from gmr.cli.pruning import check_pruning, prune_folder, pruning_options
 from gmr.cli.scenarios import check_scenarios, scenario_options
-from gmr.cli.tuning import Tuned, tune_evaluation, tuning_option
+from gmr.cli.tuning import tune_evaluation, tuning_option
 from gmr.cli.weights import weight_option
 
 if TYPE_CHECKING:
     from gmr.evaluation import Comparison, Evaluation
+    from gmr.evaluation.reading import Read
     from gmr.evaluation.scenarios.asked import Asked
     from gmr.matching.schema import Schema
     from gmr.matching.trial import Tracking
@@ -56,8 +58,8 @@ Examples:
   gmr evaluate takes/ --json > found.json      for a machine
 
 \b
-Exit codes: 0 all files were evaluated, 1 some or all could not be (they are named),
-2 wrong usage, 130 interrupted.
+Exit codes: 0 all files were evaluated, 1 some or all could not be (they are named), or --prune, --tune
+or --complete-from came to nothing (the report is written all the same), 2 wrong usage, 130 interrupted.
 """
 
 
@@ -162,8 +164,11 @@ def evaluate(
             check_pruning(prune_out, phases)
         if completing is not None:
             check_completing(completing, phases)
+        reading: dict[str, Any] = {"threads": threads, "names": names, "unit": unit}
+        # Read once: a completion needs the clips themselves too.
+        read = read_dataset(folders[0], threads, phases) if completing is not None else None
         found = _evaluated(
-            folders,
+            folders if read is None else [read],
             preset=preset,
             mirror=mirror,
             scenarios=scenarios,
@@ -173,61 +178,47 @@ def evaluate(
             tracking=("time", "velocity") if tracking == "both" else cast("Tracking", tracking),
             speeds=speeds,
             turn_rates_deg=turn_rates,
-            threads=threads,
             workers=workers,
             cluster=cluster,
-            names=names,
-            unit=unit,
             schema=schema,
             progress=phases.tell,
+            **reading,
         )
-        added: dict[str, Pruned | Tuned | Completed] = {}
+        later = Afterwards(phases)
         refused, earlier = False, list[str]()
         if prune is not None:
             assert isinstance(found, gmr.Evaluation)
-            added["pruned"] = prune_folder(
-                found,
-                folders[0],
-                prune,
-                prune_out,
-                phases,
-                threads=threads,
-                workers=workers,
-                cluster=cluster,
-                names=names,
-                unit=unit,
-            )
+            with later.trying("--prune"):
+                later.added["pruned"] = prune_folder(
+                    found, folders[0], prune, prune_out, phases, workers=workers, cluster=cluster, **reading
+                )
         if tune:
             assert isinstance(found, gmr.Evaluation)
-            added["tuned"] = tune_evaluation(found, threads=threads, progress=phases.tell)
+            with later.trying("--tune"):
+                later.added["tuned"] = tune_evaluation(found, threads=threads, progress=phases.tell)
         if completing is not None:
             assert isinstance(found, gmr.Evaluation)
-            added["completed"] = completed = complete_folder(
-                found,
-                folders[0],
-                completing,
-                phases,
-                report=not no_report,
-                threads=threads,
-                names=names,
-                unit=unit,
-            )
-            refused = bool(completed.found.refused)
-            earlier = list(earlier_clips(completed.found, completed.folder))
-        sections = [each.section() for each in added.values()]
+            assert read is not None
+            with later.trying("--complete-from"):
+                later.added["completed"] = completed = complete_folder(
+                    found, read.motions, completing, phases, report=not no_report, **reading
+                )
+                refused = bool(completed.found.refused)
+                earlier = list(earlier_clips(completed.found, completed.folder))
+        sections = [each.section() for each in later.added.values()]
         written = _write(found, None if no_report else out, tables, figures, phases, sections)
-    click.echo(as_object(found, written, added) if as_json else in_words(found, written))
-    for each in added.values() if not as_json else ():
+    click.echo(as_object(found, written, later) if as_json else in_words(found, written))
+    for each in later.added.values() if not as_json else ():
         click.echo(each.words())
-    for sentence in (*left_out(found.failed), *earlier):
+    for sentence in (*left_out(found.failed), *earlier, *later.told()):
         say(sentence)
-    return 1 if found.failed or refused else 0
+    return 1 if found.failed or refused or later.failed else 0
 
 
-def _evaluated(folders: Sequence[Path], **settings: Any) -> Evaluation | Comparison:
+def _evaluated(sources: Sequence[Path | Read], **settings: Any) -> Evaluation | Comparison:
     import gmr
 
-    return gmr.evaluate(folders[0], **settings) if len(folders) == 1 else gmr.compare(folders, **settings)
+    return gmr.evaluate(sources[0], **settings) if len(sources) == 1 else gmr.compare(sources, **settings)
 
 
 def _check_places(out: Path | None, tables: Path | None, figures: Path | None, phases: Phases) -> None:

@@ -12,9 +12,7 @@ from typing import TYPE_CHECKING, Any
 from gmr.cli.plain_rows import plain_rows
 
 if TYPE_CHECKING:
-    from gmr.cli.choosing import Completed
-    from gmr.cli.pruning import Pruned
-    from gmr.cli.tuning import Tuned
+    from gmr.cli.afterwards import Afterwards
     from gmr.evaluation import Comparison, Evaluation, Verdict
 
 __all__ = ["as_object", "in_words"]
@@ -42,7 +40,7 @@ def in_words(found: Evaluation | Comparison, written: Mapping[str, Any]) -> str:
 def as_object(
     found: Evaluation | Comparison,
     written: Mapping[str, Any],
-    added: Mapping[str, Pruned | Tuned | Completed],
+    later: Afterwards,
 ) -> str:
     """The figures as JSON: of one dataset as they are, of several as a list, with the verdict on all."""
     evaluations = _evaluations(found)
@@ -54,7 +52,8 @@ def as_object(
             "failed": dict(found.failed),
         }
     told["written"] = dict(written)
-    told |= {name: each.summary() for name, each in added.items()}
+    told |= {name: each.summary() for name, each in later.added.items()}
+    told["not_done"] = dict(later.failed)
     return json.dumps(told, indent=2, ensure_ascii=False)
 
 

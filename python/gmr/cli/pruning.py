@@ -34,15 +34,14 @@ class Pruned:
 
     def words(self) -> str:
         """For a terminal."""
-        from gmr.evaluation.words import duration
-        from gmr.pruning.manifest import cost_of_files
+        from gmr.pruning.manifest import files_words
         from gmr.pruning.words import headline, sentences
 
         width = min(shutil.get_terminal_size((100, 24)).columns, 100)
         lines = ["", *textwrap.wrap(headline(self.found), width), ""]
         for sentence in sentences(self.found):
             lines += textwrap.wrap(sentence, width, initial_indent="- ", subsequent_indent="  ")
-        files = f"The files hold {duration(self.written.part.seconds)}. {cost_of_files(self.written)}"
+        files = files_words(self.written)
         lines += textwrap.wrap(files, width, initial_indent="- ", subsequent_indent="  ")
         return "\n".join([*lines, "", f"Smaller dataset: {self.written.folder}"])
 
@@ -50,10 +49,11 @@ class Pruned:
         """For the report."""
         from gmr.pruning.section import pruning_section
 
-        return pruning_section(self.found)
+        return pruning_section(self.found, self.written)
 
     def summary(self) -> dict[str, Any]:
         """For a machine: plain values."""
+        from gmr.pruning.manifest import scores_of
         from gmr.pruning.words import headline, sentences
 
         return {
@@ -64,6 +64,7 @@ class Pruned:
             "folder": str(self.written.folder),
             "seconds": self.written.part.seconds,
             "identical": self.written.identical,
+            "runs": scores_of(self.written),
         }
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from gmr.errors import DatasetError
 from gmr.evaluation.comparison import Comparison, comparison_of
 from gmr.evaluation.evaluate import Source, evaluate
+from gmr.evaluation.reading import Read
 from gmr.evaluation.result import Evaluation, Tables
 from gmr.table import Table
 
@@ -66,7 +67,14 @@ def dataset_names(sources: Sequence[Source]) -> list[str]:
     agree, else with a number.
     """
     places = [Path(source).resolve() if isinstance(source, str | os.PathLike) else None for source in sources]
-    names = ["motions" if place is None else _printable(place.name) for place in places]
+    names = [
+        _printable(place.name)
+        if place is not None
+        else source.name
+        if isinstance(source, Read)
+        else "motions"
+        for source, place in zip(sources, places, strict=True)
+    ]
     alike = {name for name, times in Counter(names).items() if times > 1}
     names = [
         _printable(f"{place.parent.name}/{place.name}") if place is not None and name in alike else name

@@ -7,7 +7,6 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
 from functools import partial
-from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -15,7 +14,7 @@ import numpy as np
 from gmr.errors import DatasetError
 from gmr.evaluation.elsewhere import simulated_elsewhere
 from gmr.evaluation.measured import measured
-from gmr.evaluation.reading import Read, printable, read_clips
+from gmr.evaluation.reading import Read, read_clips
 from gmr.evaluation.regions import Limits
 from gmr.evaluation.replay import replay_of, worst_trial
 from gmr.evaluation.replays import replays_of
@@ -42,7 +41,7 @@ from gmr.threads import thread_count
 
 __all__ = ["Source", "evaluate"]
 
-Source: TypeAlias = "str | os.PathLike[str] | Iterable[Motion] | Mapping[str, Motion]"
+Source: TypeAlias = "str | os.PathLike[str] | Read | Iterable[Motion] | Mapping[str, Motion]"
 Progress: TypeAlias = Callable[[str, int, int], object]
 
 
@@ -74,7 +73,8 @@ def evaluate(
     turn rates the clips hold.
 
     Args:
-        source: a folder of motion files, or motions, by name or with names of their own.
+        source: a folder of motion files, or motions, by name or with names of their own; or a folder that is
+            read already (:func:`gmr.evaluation.reading.read_clips`).
         preset: pacing of the trials: "mig2022" for the durations of the paper's authors; by default every
             trial has 3 s of run-up, 2 s to settle and 30 s that are recorded.
         scenarios: "constant": each trial keeps its speed; "switching": the speed alternates with
@@ -216,6 +216,8 @@ def _read(
     source: Source, threads: int, errors: Literal["raise", "collect"], tell: Progress
 ) -> tuple[str, Read]:
     """The dataset's name, and what there is of it."""
+    if isinstance(source, Read):
+        return source.name, source
     if not isinstance(source, str | os.PathLike):
         motions = named(source)
         if not motions:
@@ -226,7 +228,7 @@ def _read(
         tell("reading", done, of)
 
     read = read_clips(source, threads=threads, errors=errors, progress=read_so_far)
-    return printable(Path(source).resolve().name), read
+    return read.name, read
 
 
 def _summary(

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from gmr.errors import DatasetError, FormatWarning
@@ -29,11 +30,13 @@ class Read:
         motions: by their path below the folder.
         failed: files that could not be read, and why.
         notes: what was odd in files that could, in sentences.
+        name: of the folder.
     """
 
     motions: Mapping[str, Motion]
     failed: Mapping[str, str]
     notes: tuple[str, ...]
+    name: str = "motions"
 
 
 def read_clips(
@@ -63,6 +66,7 @@ def read_clips(
         motions={printable(path): take for path, take in takes.items()},
         failed={printable(path): printable(str(error)) for path, error in takes.failed.items()},
         notes=tuple(odd),
+        name=printable(Path(folder).resolve().name),
     )
 
 

@@ -18,7 +18,7 @@ from gmr.pruning.prune import Pruning
 if TYPE_CHECKING:
     from gmr.pruning.writing import Written
 
-__all__ = ["cost_of_files", "manifest", "manifest_words"]
+__all__ = ["cost_of_files", "files_words", "manifest", "manifest_words", "scores", "scores_of"]
 
 NEVER = "no trial needs it"
 
@@ -33,12 +33,7 @@ def manifest(of: Pruning, written: Written, motions: Mapping[str, Motion]) -> st
         "seconds_before": of.curve.points[0].part.seconds,
         "seconds_after": written.part.seconds,
         "identical": written.identical,
-        "runs": {
-            "whole_dataset": _score(written.whole),
-            "simulated": _score(of.chosen.score),
-            "files_with_the_scale_of_the_whole": _score(written.kept_scale),
-            "files_by_themselves": _score(written.own_scale),
-        },
+        "runs": {"simulated": _score(of.chosen.score), **scores_of(written)},
         # A feature without weight is divided by infinity, which JSON does not know.
         "scale": {
             "offset": scale.offset.tolist(),
@@ -57,6 +52,15 @@ def manifest(of: Pruning, written: Written, motions: Mapping[str, Motion]) -> st
         "not_evaluated": dict(database.excluded),
     }
     return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def scores_of(written: Written) -> dict[str, dict[str, Any]]:
+    """How well the whole dataset and the files do, as plain values."""
+    return {
+        "whole_dataset": _score(written.whole),
+        "files_with_the_scale_of_the_whole": _score(written.kept_scale),
+        "files_by_themselves": _score(written.own_scale),
+    }
 
 
 def _score(score: Score) -> dict[str, Any]:
@@ -118,9 +122,7 @@ def manifest_words(of: Pruning, written: Written, motions: Mapping[str, Motion])
         "",
         "| | mean offset, m | trials that hold |",
         "|---|---|---|",
-        _row("the whole dataset", written.whole),
-        _row("these files, features scaled as in the whole", written.kept_scale),
-        _row("these files by themselves", written.own_scale),
+        *(_row(what, score) for what, score in scores(written, "these files").items()),
         "",
         "The last two rows were measured on these files, read again; the last is what `gmr evaluate` shows "
         "of this folder with the same settings.",
@@ -142,6 +144,11 @@ def manifest_words(of: Pruning, written: Written, motions: Mapping[str, Motion])
         ),
     ]
     return "\n".join(lines) + "\n"
+
+
+def files_words(written: Written) -> str:
+    """How long the written files are, and what they cost."""
+    return f"The files hold {duration(written.part.seconds)}. {cost_of_files(written)}"
 
 
 def cost_of_files(written: Written) -> str:
@@ -175,6 +182,15 @@ def _cost_by_their_own_scale(written: Written) -> str:
         f"An evaluation of the new folder scales the features by what is left: there {held} of "
         f"{count(written.own_scale.runs, 'trial')} hold{whole}."
     )
+
+
+def scores(written: Written, files: str) -> dict[str, Score]:
+    """How well the whole dataset does, and ``files``, what was written, by both scales."""
+    return {
+        "the whole dataset": written.whole,
+        f"{files}, features scaled as in the whole": written.kept_scale,
+        f"{files} by themselves": written.own_scale,
+    }
 
 
 def _row(what: str, score: Score) -> str:
