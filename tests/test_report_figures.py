@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -20,10 +21,12 @@ from gmr.evaluation.figures import figures, svg
 from gmr.evaluation.figures.classes import Classes, two_sided
 from gmr.evaluation.figures.clip_circles import clip_circles
 from gmr.evaluation.figures.clip_usage import clip_usage, never_played, recordings
+from gmr.evaluation.figures.compared_coverage import compared_coverage
 from gmr.evaluation.figures.coverage_density import coverage_density
 from gmr.evaluation.figures.coverage_scatter import coverage_scatter
 from gmr.evaluation.figures.frame_usage import frame_usage
 from gmr.evaluation.figures.holds_map import holds_map
+from gmr.evaluation.figures.pose_distance import pose_distance
 from gmr.evaluation.figures.transition_matrix import flows
 from gmr.evaluation.figures.wording import base_name, short_names
 from gmr.evaluation.regions import Grid, Limits
@@ -112,6 +115,39 @@ def test_scatter_draws_every_window_until_they_are_too_many(evaluation: Evaluati
     many = coverage_scatter(fake_evaluation(159, 500))
     assert 12_000 < len(many.data["windows"]) <= 24_000
     assert "One window in 4" in many.sentence
+
+
+def test_a_few_spins_do_not_stretch_the_scatter_and_are_counted(evaluation: Evaluation) -> None:
+    windows = evaluation.measured.coverage
+    turn = np.clip(windows["turn_rate_deg"], -90.0, 90.0)
+    turn[:7] = 580.0
+    turn[7:9] = -600.0
+    spun, calm = (
+        without(evaluation, coverage=Table({**dict(windows), "turn_rate_deg": each}))
+        for each in (turn, np.clip(turn, -90, 90))
+    )
+    one, two = coverage_scatter(spun), compared_coverage([spun, calm])
+    for figure, layers in ((one, one.chart["layer"]), (two, [two.chart])):
+        for layer in layers:
+            scale = layer["encoding"]["x"]["scale"]
+            assert scale["domain"] == [-100.0, 100.0]
+            assert scale["clamp"] is True
+        assert (np.abs(figure.data["windows"]["turn_rate_deg"]) > 100).any()
+    assert f"9 of {len(windows):,} windows turn faster than 100 degrees/s, up to 600, and are" in one.sentence
+    assert f"9 of {2 * len(windows):,} windows turn faster" in two.sentence
+    whole = without(evaluation, coverage=Table({**dict(windows), "turn_rate_deg": np.clip(turn, -140, 140)}))
+    assert "edge" not in coverage_scatter(whole).sentence
+
+
+def test_maps_of_cells_say_how_much_turns_too_fast_to_be_drawn(evaluation: Evaluation) -> None:
+    poses = evaluation.measured.pose_coverage
+    fast = np.argsort(poses["seconds"])[-1:]
+    turn = poses["turn_rate_deg"].copy()
+    turn[fast] = 1000.0
+    spun = pose_distance(without(evaluation, pose_coverage=Table({**dict(poses), "turn_rate_deg": turn})))
+    drawn = sum(float(spun.data[name]["seconds"].sum()) for name in ("cells", "alone"))
+    assert drawn < poses["seconds"].sum() - 1
+    assert re.search(r"\d seconds of turning faster than \d+ degrees/s are not drawn\.$", spun.sentence)
 
 
 def test_scatter_thinned_keeps_every_clip() -> None:

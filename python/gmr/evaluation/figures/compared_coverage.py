@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gmr.evaluation.figures.axes import point_axes
+from gmr.evaluation.figures.axes import at_the_edge, point_axes, widest_turn
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.words import listing, percent
 from gmr.pages.figure import Figure
@@ -18,8 +18,6 @@ __all__ = ["compared_coverage"]
 _MOST_POINTS: Final = 18_000
 _COLOURS: Final = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8a6fd1")
 """After Okabe and Ito: told apart by colour-blind readers too, on white and on black."""
-_RARE: Final = 0.01
-"""Share of the windows that may turn too fast for the picture, which turning on the spot would stretch."""
 _SHAPES: Final = ("circle", "square", "triangle-up", "diamond", "cross")
 
 
@@ -31,10 +29,9 @@ def compared_coverage(evaluations: Sequence[Evaluation]) -> Figure:
     names = [evaluation.dataset for evaluation in evaluations]
     windows = [evaluation.measured.coverage for evaluation in evaluations]
     step = max(1, -(-sum(map(len, windows)) // _MOST_POINTS))
-    turns = np.abs(np.concatenate([table["turn_rate_deg"] for table in windows]))
-    limit = max(100.0, float(np.quantile(turns, 1 - _RARE))) if len(turns) else 100.0
-    thinned = [table.take(np.arange(0, len(table), step)) for table in windows]
-    shown = [table.take(np.abs(table["turn_rate_deg"]) <= limit) for table in thinned]
+    asked = np.concatenate([evaluation.measured.trials["turn_rate_deg"] for evaluation in evaluations])
+    limit = widest_turn(np.concatenate([table["turn_rate_deg"] for table in windows]), asked)
+    shown = [table.take(np.arange(0, len(table), step)) for table in windows]
     order = np.argsort(np.concatenate([np.arange(len(t)) / max(len(t), 1) for t in shown]), kind="stable")
     points = Table(
         {
@@ -64,10 +61,9 @@ def _sentence(names: Sequence[str], windows: Sequence[Table], step: int, limit: 
         low, high = np.percentile(table["speed"], [5, 95])
         speeds.append(f"of {name}{'' if speeds else ' lie'} between {low:.1f} and {high:.1f} m/s")
         turning.append(f"{percent(float(np.mean(np.abs(table['turn_rate_deg']) > 25)))} of {name}")
-    outside = sum(int((np.abs(table["turn_rate_deg"]) > limit).sum()) for _, table in held)
     parts = [
         f"Nine tenths {listing(speeds)}; {listing(turning)} turn faster than 25 degrees/s.",
-        f"Faster turns than {limit:.0f} degrees/s are not drawn." if outside else "",
+        at_the_edge(np.concatenate([table["turn_rate_deg"] for _, table in held]), limit),
         f"One window in {step} is drawn." if step > 1 else "",
     ]
     return " ".join(filter(None, parts))

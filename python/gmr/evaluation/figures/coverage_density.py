@@ -8,21 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.evaluation.coverage import Bins, Density, density
-from gmr.evaluation.figures.axes import TURN_RATE, cell_axes
+from gmr.evaluation.figures.axes import TURN_RATE, cell_axes, not_drawn, widest_turn
 from gmr.evaluation.figures.classes import Classes
 from gmr.evaluation.regions import Grid, Limits
 from gmr.evaluation.result import Evaluation
-from gmr.evaluation.words import count, duration, going, listing, percent
+from gmr.evaluation.words import count, going, listing, percent
 from gmr.pages.figure import Figure
 from gmr.pages.theme import turn_ticks
 from gmr.table import Table
 
-__all__ = ["coverage_density", "seconds_near_pairs", "widest_turn"]
+__all__ = ["coverage_density", "seconds_near_pairs"]
 
 _CELLS: Final = Bins(speed=0.1, turn_rate_deg=5.0, blur=0.0)
 _SECONDS: Final = Classes("amount", (0.1, 0.3, 1.0, 3.0, 10.0, 30.0))
-_RARE: Final = 0.02
-"""Share of the time that may turn too fast for the picture, which turning on the spot would stretch."""
 
 
 def coverage_density(evaluation: Evaluation) -> Figure:
@@ -30,7 +28,7 @@ def coverage_density(evaluation: Evaluation) -> Figure:
     windows = evaluation.measured.coverage
     held = density(windows, _CELLS)
     pairs = seconds_near_pairs(evaluation)
-    limit = widest_turn(windows, pairs)
+    limit = widest_turn(windows["turn_rate_deg"], pairs["turn_rate_deg"])
     cells = _cells(held)
     inside = np.abs(cells["turn_rate_deg"]) <= limit
     return Figure(
@@ -51,13 +49,6 @@ def seconds_near_pairs(evaluation: Evaluation) -> Table:
     grid = Grid.of(evaluation.measured.trials, evaluation.measured.coverage, Limits())
     speed, turn = np.meshgrid(grid.speeds, grid.turn_rates_deg, indexing="ij")
     return Table({"speed": speed.ravel(), "turn_rate_deg": turn.ravel(), "seconds": grid.seconds.ravel()})
-
-
-def widest_turn(windows: Table, pairs: Table) -> float:
-    """Turn rate, in deg/s, up to which the picture reaches."""
-    turn = np.abs(windows["turn_rate_deg"])
-    usual = float(np.quantile(turn, 1 - _RARE)) if len(turn) else 0.0
-    return max(usual, float(np.abs(pairs["turn_rate_deg"]).max(initial=0.0)))
 
 
 def _cells(held: Density) -> Table:
@@ -90,9 +81,7 @@ def _sentence(cells: Table, pairs: Table, outside: float, limit: float) -> str:
         "" if held.all() else _gap(pairs, ~held),
         f"Most time is spent {going(float(cells['speed'][best]), float(cells['turn_rate_deg'][best]))}.",
         _balance(cells),
-        f"{duration(outside)} of turning faster than {limit:.0f} degrees/s are not drawn."
-        if outside >= 1
-        else "",
+        not_drawn(outside, limit),
     ]
     return " ".join(filter(None, parts))
 

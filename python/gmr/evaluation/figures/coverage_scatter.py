@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.figures.axes import point_axes
+from gmr.evaluation.figures.axes import at_the_edge, point_axes, widest_turn
 from gmr.evaluation.figures.wording import base_name
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.words import count, percent
@@ -26,7 +26,8 @@ _SHAPES: Final = ["circle", "square", "triangle-up", "diamond", "cross"]
 def coverage_scatter(evaluation: Evaluation) -> Figure:
     """Every 1-s window of every clip, in speed and turn rate, coloured by clip.
 
-    With more windows than can be drawn every n-th is, and the sentence says so.
+    With more windows than can be drawn every n-th is, and the sentence says so. Few that turn much faster
+    than all others are drawn at the edge, and are counted.
     """
     windows = evaluation.measured.coverage
     step = max(-(-len(windows) // _MOST_POINTS), 1)
@@ -42,11 +43,12 @@ def coverage_scatter(evaluation: Evaluation) -> Figure:
             "shape": number // len(_COLOURS) % len(_SHAPES),
         }
     )
+    limit = widest_turn(windows["turn_rate_deg"], evaluation.measured.trials["turn_rate_deg"])
     return Figure(
         name="coverage_scatter",
         title="Speed and turn rate of every second of motion, by clip",
-        sentence=_sentence(windows, len({base_name(clip) for clip in clips.tolist()}), step),
-        chart=_chart(points),
+        sentence=_sentence(windows, len({base_name(clip) for clip in clips.tolist()}), step, limit),
+        chart=_chart(points, limit),
         data={"windows": points, "chosen": points.take(np.arange(0))},
         printable=False,
     )
@@ -59,7 +61,7 @@ def _every(step: int, clips: NDArray[Any]) -> NDArray[np.int64]:
     return np.flatnonzero(within % step == 0)
 
 
-def _sentence(windows: Table, clip_count: int, step: int) -> str:
+def _sentence(windows: Table, clip_count: int, step: int, limit: float) -> str:
     if len(windows) == 0:
         return "No clip is long enough for a single window of one second."
     speed, turn = windows["speed"], np.abs(windows["turn_rate_deg"])
@@ -69,13 +71,14 @@ def _sentence(windows: Table, clip_count: int, step: int) -> str:
         f"{usual[1]:.1f} m/s; {percent(float(np.mean(turn > 25)))} of it turns faster than 25 degrees/s, "
         f"{percent(float(np.mean(turn > 75)))} faster than 75 degrees/s.",
     ]
+    if outside := at_the_edge(windows["turn_rate_deg"], limit):
+        parts.append(outside)
     if step > 1:
         parts.append(f"One window in {step} of the {len(windows):,} is drawn.")
     return " ".join(parts)
 
 
-def _chart(points: Table) -> dict[str, Any]:
-    turn = float(np.abs(points["turn_rate_deg"]).max(initial=25.0))
+def _chart(points: Table, turn: float) -> dict[str, Any]:
     speed = float(points["speed"].max(initial=1.0))
     place = point_axes(turn, speed)
     by_clip = {

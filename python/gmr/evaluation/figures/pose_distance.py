@@ -8,9 +8,9 @@ from typing import Any, Final
 import numpy as np
 
 from gmr.evaluation.coverage_cells import Bins
-from gmr.evaluation.figures.axes import TURN_RATE, cell_axes
+from gmr.evaluation.figures.axes import TURN_RATE, cell_axes, not_drawn, widest_turn
 from gmr.evaluation.figures.classes import Classes
-from gmr.evaluation.figures.coverage_density import seconds_near_pairs, widest_turn
+from gmr.evaluation.figures.coverage_density import seconds_near_pairs
 from gmr.evaluation.pose_coverage import ALONE, BLENDABLE, REDUNDANT, THIN, UNBLENDABLE, BlendLimits
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.words import duration, percent
@@ -27,14 +27,17 @@ _CENTIMETRES: Final = Classes("error", (2.0, 3.0, 5.0, 10.0, 15.0, 25.0))
 def pose_distance(evaluation: Evaluation) -> Figure:
     """Centimetres from the poses of each cell to the nearest ones of other clips; thin cells are faint."""
     poses = evaluation.measured.pose_coverage
-    limit = widest_turn(evaluation.measured.coverage, seconds_near_pairs(evaluation))
+    limit = widest_turn(
+        evaluation.measured.coverage["turn_rate_deg"], seconds_near_pairs(evaluation)["turn_rate_deg"]
+    )
     inside = poses.take(np.abs(poses["turn_rate_deg"]) <= limit)
+    outside = float(poses["seconds"].sum() - inside["seconds"].sum())
     alone = ~np.isfinite(inside["nearest_mean"])
     cells = _cells(inside)
     return Figure(
         name="pose_distance",
         title="Centimetres to the nearest pose of another clip that goes alike",
-        sentence=" ".join(_sentences(poses)),
+        sentence=" ".join(filter(None, (*_sentences(poses), not_drawn(outside, limit)))),
         chart=_chart(limit),
         data={"cells": cells.take(~alone), "alone": cells.take(alone)},
     )

@@ -7,9 +7,9 @@ from typing import Any, Final
 import numpy as np
 
 from gmr.evaluation.coverage_symmetry import SYMMETRY_CELLS, symmetry_of
-from gmr.evaluation.figures.axes import cell_axes
+from gmr.evaluation.figures.axes import cell_axes, not_drawn, widest_turn
 from gmr.evaluation.figures.classes import two_sided
-from gmr.evaluation.figures.coverage_density import seconds_near_pairs, widest_turn
+from gmr.evaluation.figures.coverage_density import seconds_near_pairs
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.words import duration
 from gmr.pages.figure import Figure
@@ -23,12 +23,15 @@ _MORE: Final = two_sided((20.0, 50.0, 80.0))
 def turn_symmetry(evaluation: Evaluation) -> Figure:
     """Which side has more of each movement: its seconds less the other side's, in per cent of both."""
     sides = evaluation.measured.coverage_symmetry
-    limit = widest_turn(evaluation.measured.coverage, seconds_near_pairs(evaluation))
+    limit = widest_turn(
+        evaluation.measured.coverage["turn_rate_deg"], seconds_near_pairs(evaluation)["turn_rate_deg"]
+    )
     inside = sides.take(sides["turn_rate_deg"] <= limit)
+    outside = _seconds(sides) - _seconds(inside)
     return Figure(
         name="turn_symmetry",
         title="Seconds of turning left less those of turning right, in per cent of both",
-        sentence=_sentence(sides),
+        sentence=" ".join(filter(None, (_sentence(sides), not_drawn(outside, limit)))),
         chart=_chart(),
         data={"cells": _cells(inside)},
     )
@@ -49,6 +52,10 @@ def _cells(sides: Table) -> Table:
             "class": _MORE.of(more),
         }
     )
+
+
+def _seconds(sides: Table) -> float:
+    return float((sides["left_seconds"] + sides["right_seconds"]).sum())
 
 
 def _sentence(sides: Table) -> str:
