@@ -99,6 +99,33 @@ def test_clips_that_stand_are_told_so_and_not_to_go_straight() -> None:
     assert "only go straight" not in str(said)
 
 
+def test_clips_that_hold_nothing_of_the_grid_are_told_by_what_they_do_and_how_much_they_are_played() -> None:
+    walks = {f"walks/{name}": arc for name, arc in EVERYTHING.items()}
+    others = {
+        "dance/spin.bvh": Arc(9.0, 0.2, 250.0),
+        "dance/back.bvh": Arc(5.0, 1.0, 0.0, backwards=True),
+        "play/stand.bvh": Arc(8.0, 0.01),
+        "play/back.bvh": Arc(4.0, 2.0, 0.0, backwards=True),
+    }
+    runs = {"runs/fast.bvh": Arc(6.0, 5.0)}
+    said = judged({**walks, **others, **runs})
+    (told,) = [
+        sentence for sentence in said.sentences if "no walking or running that the grid asks for" in sentence
+    ]
+    assert told.startswith(
+        "3 clips of 30 (17 seconds, 13% of the material) are no walking or running that the grid asks for"
+    )
+    assert "(play/stand.bvh, dance/back.bvh and play/back.bvh)" in told
+    assert "fast.bvh" not in told
+    assert "no walking or running that the grid asks for" not in str(judged({**walks, **runs}))
+    del others["dance/spin.bvh"]
+    assert "no walking or running that the grid asks for" not in str(judged(others))
+    alone = judged({**EVERYTHING, "stand.bvh": Arc(3.0, 0.01)}, grid=GRID[:1])
+    (told,) = [sentence for sentence in alone.sentences if "that the grid asks for" in sentence]
+    assert told.startswith("1 clip of 26 (3 seconds, 3% of the material) is no walking")
+    assert told.endswith("(stand.bvh). Such clips are never shown.")
+
+
 def test_feet_that_stand_still_slide_by_nothing() -> None:
     slide = {"foot_slide_mm": np.array([1e-10]), "foot_slide_own_mm": np.array([0.04])}
     jerk = {"jerk_at_jumps": np.array([0.0]), "jerk_between_jumps": np.array([1.0])}

@@ -13,7 +13,7 @@ from gmr.evaluation.usage import plays
 from gmr.evaluation.words import count, duration, listing, percent, some_of
 from gmr.table import Table
 
-__all__ = ["MIRRORED", "clip_sentences"]
+__all__ = ["MIRRORED", "MOST_NAMES", "below_their_common_folder", "clip_sentences", "originals"]
 
 MIRRORED: Final = " (mirrored)"
 """What the name of a mirrored copy ends in."""
@@ -31,14 +31,8 @@ class _Clips:
 
     @classmethod
     def of(cls, clips: Table) -> _Clips:
-        own = np.array(
-            [
-                name.removesuffix(MIRRORED) if copy else name
-                for name, copy in zip(clips["clip"].tolist(), clips["mirrored"].tolist(), strict=True)
-            ],
-            str,
-        )
-        names, which = np.unique(_below_their_common_folder(own.tolist()), return_inverse=True)
+        own = originals(clips).tolist()
+        names, which = np.unique(below_their_common_folder(own), return_inverse=True)
         seconds = np.bincount(which, np.where(clips["mirrored"], 0.0, clips["seconds"]), len(names))
         share = np.bincount(which, clips["played_share"], len(names))
         order = np.lexsort((names, -seconds, -share))
@@ -47,7 +41,14 @@ class _Clips:
         )
 
 
-def _below_their_common_folder(names: list[str]) -> list[str]:
+def originals(clips: Table) -> NDArray[np.str_]:
+    """(C,) the names of the clips, a mirrored copy's that of its original."""
+    pairs = zip(clips["clip"].tolist(), clips["mirrored"].tolist(), strict=True)
+    return np.array([name.removesuffix(MIRRORED) if copy else name for name, copy in pairs], str)
+
+
+def below_their_common_folder(names: list[str]) -> list[str]:
+    """The names without the folders that all of them begin with."""
     parts = [name.split("/") for name in names]
     shared = 0
     while all(len(part) > shared + 1 for part in parts) and len({part[shared] for part in parts}) == 1:

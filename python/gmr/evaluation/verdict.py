@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from gmr.evaluation.blending_sentences import blending_sentences, lead_in_sentences
 from gmr.evaluation.clip_sentences import clip_sentences
+from gmr.evaluation.elsewhere_sentences import elsewhere_sentences
 from gmr.evaluation.failure_sentences import capture_sentences, failure_sentences
 from gmr.evaluation.path_sentences import path_sentences
 from gmr.evaluation.regions import Grid, Limits, failures, held_rectangle
@@ -72,6 +73,7 @@ def verdict(
             *seen_sentences(trials),
             *_side_sentences(coverage, mirrored),
             *clip_sentences(clips, usage),
+            *elsewhere_sentences(grid, coverage, clips),
             *(blending_sentences(poses, mirrored=mirrored) if poses is not None else ()),
             *capture_sentences(grid, regions, mirrored),
             *(lead_in_sentences(poses, grid) if poses is not None else ()),

@@ -1,0 +1,96 @@
+"""Clips that hold nothing the grid asks for, in words: what they do is computed, not guessed from names.
+
+Among walks and runs there may lie a dance, a game or steps backwards. Their seconds count as material, and
+pieces of them are played where nothing nearer is about; whoever reads the verdict is to know.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gmr.evaluation.clip_sentences import MOST_NAMES, below_their_common_folder, originals
+from gmr.evaluation.regions import FORWARD_SHARE, Grid
+from gmr.evaluation.words import STANDS, count, duration, percent, some_of
+from gmr.table import Table
+
+__all__ = ["elsewhere_sentences"]
+
+MOSTLY: Final = 0.5
+"""A clip that goes forward for this share of its time, at any speed, is locomotion, if not of the grid."""
+
+ALONE: Final = 0.01
+"""Share of the time of all trials from which on such a clip is named with its share."""
+
+
+def elsewhere_sentences(grid: Grid, coverage: Table, clips: Table) -> Iterator[str]:
+    """Say which clips mostly stand, turn on the spot, or go sideways or backwards, and how much is played.
+
+    A clip counts, with its mirrored copy, when less of it than a cell of the grid must have goes forward
+    within the grid's speeds and turn rates, and less than half of it forward at any speed.
+    """
+    own = originals(clips)
+    names, which = np.unique(own, return_inverse=True)
+    others = _hold_nothing(grid, coverage, dict(zip(clips["clip"].tolist(), which.tolist(), strict=True)))
+    if not others.any() or others.all():
+        return
+    seconds = np.bincount(which, np.where(clips["mirrored"], 0.0, clips["seconds"]), len(names))
+    share = np.bincount(which, clips["played_share"], len(names)).astype(np.float64)
+    told = below_their_common_folder(names.tolist())
+    longest = [int(place) for place in np.argsort(-seconds, kind="stable") if others[place]]
+    lasting = float(seconds[others].sum())
+    clips_told = count(len(longest), "clip")
+    part = percent(lasting / float(seconds.sum()))
+    verb = "is" if len(longest) == 1 else "are"
+    yield (
+        f"{clips_told} of {len(names)} ({duration(lasting)}, {part} of the material) {verb} no walking or "
+        "running that the grid asks for: each goes forward at the grid's speeds and turn rates for less than "
+        f"{duration(grid.limits.covered)}, and at any speed for less than half of its time; the rest is "
+        f"standing, turning on the spot, and going sideways or backwards ({_where(told, longest)}). "
+        f"{_played(told, share, others)}"
+    )
+
+
+def _hold_nothing(grid: Grid, coverage: Table, place: dict[str, int]) -> NDArray[np.bool_]:
+    """(C,) which clips hold nothing that the grid asks for; ``place`` is the number of a name."""
+    speeds, turns = grid.borders
+    speed, turn, weight = coverage["speed"], coverage["turn_rate_deg"], coverage["weight"]
+    forward = (speed >= STANDS) & (coverage["forward_speed"] >= FORWARD_SHARE * speed)
+    asked = forward & (speed >= speeds[0]) & (speed <= speeds[-1]) & (turn >= turns[0]) & (turn <= turns[-1])
+    clip = np.array([place[name] for name in coverage["clip"].tolist()], np.int64)
+
+    def seconds(windows: NDArray[np.bool_]) -> NDArray[np.float64]:
+        return np.bincount(clip[windows], weight[windows], max(place.values()) + 1).astype(np.float64)
+
+    every = seconds(np.ones(len(coverage), bool))
+    lacks = seconds(asked) < grid.limits.covered
+    return np.asarray((every > 0) & lacks & (seconds(forward) < MOSTLY * every))
+
+
+def _where(names: Sequence[str], chosen: Sequence[int]) -> str:
+    """Some of their names; of several folders how many lie in each, that with most of them first."""
+    folders = [name.rpartition("/")[0] for name in names]
+    found, every = Counter(folders[place] for place in chosen), Counter(folders)
+    if len(every) == 1 or len(chosen) <= MOST_NAMES:
+        return some_of([names[place] for place in chosen], MOST_NAMES)
+    parts = [
+        f"{number} of {every[folder]} in {folder or 'the folder'}" for folder, number in found.most_common()
+    ]
+    return some_of(parts, 2 * MOST_NAMES)
+
+
+def _played(names: Sequence[str], share: NDArray[np.float64], others: NDArray[np.bool_]) -> str:
+    """How much of the time they are shown all the same, and the most played one."""
+    total, most = float(share[others].sum()), int(np.argmax(np.where(others, share, -1.0)))
+    if total == 0:
+        return "Such clips are never shown."
+    alone = f", {names[most]} alone for {percent(float(share[most]))}"
+    return (
+        f"Such clips are shown for {percent(total)} of the time"
+        f"{alone if share[most] >= ALONE and others.sum() > 1 else ''}; what the others do by themselves, an "
+        "evaluation without them tells."
+    )
