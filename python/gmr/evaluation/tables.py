@@ -49,7 +49,8 @@ class Tables:
         clips: one row a clip: dataset clip seconds frames mirrored speed_mean turn_rate_mean_deg
             played_seconds played_share used_share
             foot_slide_mm stances jerk_mean stance_seconds.
-            See :mod:`gmr.evaluation.seen` for feet and jerk.
+            See :mod:`gmr.evaluation.seen` for feet and jerk: the slide is measured over a twelfth of a
+            second, the jerk from third differences at the evaluation's 60 frames a second, over six frames.
             ``played_share`` is of the time of all trials, ``used_share`` of the clip's own frames.
 
         pose_coverage: one row a cell of 0.1 m/s by 5 degrees/s that the clips reach:
