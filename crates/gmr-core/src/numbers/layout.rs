@@ -3,10 +3,32 @@
 /// Bytes that one register holds, and so one more than the longest token that the fast readers take.
 pub(super) const WIDTH: usize = 16;
 
-/// `10^-(length - point - 1)` for a token of `length` bytes whose point is at `point` is the inverse of
-/// `DIVISORS[length - point]`; `point == length` means that it has none.
-pub(super) const DIVISORS: [f64; WIDTH] =
-    [1e0, 1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14];
+/// Shapes that a token can have: its length and where its point is, both below [`WIDTH`].
+const SHAPES: usize = WIDTH * WIDTH;
+
+/// Where a token of `length` bytes whose point is at `point` stands in the tables; `point == length` means that it has
+/// none. Of other numbers it makes some place in the tables.
+#[inline(always)]
+pub(super) fn shape(length: usize, point: usize) -> usize {
+    length.wrapping_mul(WIDTH).wrapping_add(point) % SHAPES
+}
+
+/// What to divide the digits of a token of each shape by, taken as a whole number.
+pub(super) static DIVISORS: [f64; SHAPES] = divisors();
+
+const fn divisors() -> [f64; SHAPES] {
+    let mut table = [1.0; SHAPES];
+    let mut length = 0;
+    while length < WIDTH {
+        let mut point = 0;
+        while point < length {
+            table[length * WIDTH + point] = EXACT_POWERS[length - point - 1];
+            point += 1;
+        }
+        length += 1;
+    }
+    table
+}
 
 /// Powers of ten that an `f64` holds exactly.
 pub(super) const EXACT_POWERS: [f64; 23] = [
@@ -14,12 +36,12 @@ pub(super) const EXACT_POWERS: [f64; 23] = [
     1e19, 1e20, 1e21, 1e22,
 ];
 
-/// `[length][point]`: which byte of a token goes where, so that its digits end at the last lane and its point is gone.
-pub(super) static GATHER: [[[u8; WIDTH]; WIDTH]; WIDTH] = gather();
+/// Which byte of a token of each shape goes where, so that its digits end at the last lane and its point is gone.
+pub(super) static GATHER: [[u8; WIDTH]; SHAPES] = gather();
 
-const fn gather() -> [[[u8; WIDTH]; WIDTH]; WIDTH] {
+const fn gather() -> [[u8; WIDTH]; SHAPES] {
     // An index with its high bit set gives a zero byte on x86, one of 16 or more on AArch64.
-    let mut table = [[[0x80; WIDTH]; WIDTH]; WIDTH];
+    let mut table = [[0x80; WIDTH]; SHAPES];
     let mut length = 0;
     while length < WIDTH {
         let mut point = 0;
@@ -30,7 +52,7 @@ const fn gather() -> [[[u8; WIDTH]; WIDTH]; WIDTH] {
                 byte -= 1;
                 if byte != point {
                     lane -= 1;
-                    table[length][point][lane] = byte as u8;
+                    table[length * WIDTH + point][lane] = byte as u8;
                 }
             }
             point += 1;

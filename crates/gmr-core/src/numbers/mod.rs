@@ -19,6 +19,8 @@ mod scalar;
 mod avx2;
 #[cfg(target_arch = "aarch64")]
 mod neon;
+#[cfg(target_arch = "x86_64")]
+mod window;
 
 #[cfg(test)]
 mod amc_tests;

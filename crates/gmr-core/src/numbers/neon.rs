@@ -3,7 +3,7 @@
 //! Masks have four bits a byte, the narrowest that one instruction gives here; one bit of each four is kept.
 
 use super::amc::{self, FramesRead, ParseFrames};
-use super::layout::{DIVISORS, GATHER, WIDTH};
+use super::layout::{DIVISORS, GATHER, WIDTH, shape};
 use super::parse::{self, ParseRows, RowsRead};
 use std::arch::aarch64::*;
 
@@ -15,7 +15,7 @@ pub(super) fn rows(job: &ParseRows<'_>, out: &mut [f64]) -> RowsRead {
 
 #[target_feature(enable = "neon")]
 fn rows_neon(job: &ParseRows<'_>, out: &mut [f64]) -> RowsRead {
-    parse::rows(job, out, |text, at| number(text, at))
+    parse::rows(job, out, |text, at, room, _| parse::one(number(text, at), at, room))
 }
 
 /// Reads the frames of `job`; every AArch64 machine has NEON.
@@ -55,11 +55,12 @@ fn number(text: &[u8], at: usize) -> Option<(f64, usize)> {
     }
     let point = (others | ends).trailing_zeros() / 4;
 
-    let gather: &[u8; WIDTH] = &GATHER[length as usize & (WIDTH - 1)][point as usize & (WIDTH - 1)];
+    let shape = shape(length as usize, point as usize);
+    let gather: &[u8; WIDTH] = &GATHER[shape];
     // SAFETY: a row of the table holds 16 bytes; the load needs no alignment.
     let gather = unsafe { vld1q_u8(gather.as_ptr()) };
     let mantissa = whole(vqtbl1q_u8(vandq_u8(raised, is_digit), gather));
-    let magnitude = mantissa as f64 / DIVISORS[(length - point) as usize & (WIDTH - 1)];
+    let magnitude = mantissa as f64 / DIVISORS[shape];
     Some((f64::from_bits(magnitude.to_bits() | negative << 63), at + length as usize))
 }
 

@@ -58,46 +58,61 @@ impl ParseRows<'_> {
             Isa::Avx2 | Isa::Avx512 if isa.is_available() => super::avx2::rows(self, out),
             #[cfg(target_arch = "aarch64")]
             Isa::Neon => super::neon::rows(self, out),
-            _ => rows(self, out, |_, _| None),
+            _ => rows(self, out, |_, at, _, _| (0, at)),
         })
     }
 }
 
-/// The loop of every instruction set; `fast` gives a value and its end, or `None` where the scalar reader must look.
+/// The loop of every instruction set. Of a text, a place in it, and room whose first so many values are wanted, `fast`
+/// says how many values it has put there, and where the last one ends; none where the scalar reader must look.
 ///
-/// `fast` may take a token only where the scalar reader gives the same value and end.
+/// `fast` may take a token only where the scalar reader gives the same value and end, and skip only blanks between
+/// them. What it writes into the room beyond them will be written anew, or does not count.
 #[inline(always)]
 pub(super) fn rows(
     job: &ParseRows<'_>,
     out: &mut [f64],
-    fast: impl Fn(&[u8], usize) -> Option<(f64, usize)>,
+    fast: impl Fn(&[u8], usize, &mut [f64], usize) -> (usize, usize),
 ) -> RowsRead {
-    let text = job.text;
+    let ParseRows { text, columns, .. } = *job;
     let mut end = job.start;
-    for (row, values) in out.chunks_exact_mut(job.columns).enumerate() {
+    for row in 0..out.len() / columns {
         let stop = |end: usize, fault: Option<Fault>| RowsRead { rows: row, end, fault };
         let mut at = row_start(text, end);
         if at == text.len() {
             return stop(end, None);
         }
-        for (field, value) in values.iter_mut().enumerate() {
-            let (number, next) = match fast(text, at) {
-                Some(read) => read,
-                None => match scalar::read(text, at) {
-                    Token::Value(number, next) => (number, next),
+        let mut field = 0;
+        while field < columns {
+            let room = &mut out[row * columns + field..];
+            let (count, next) = match fast(text, at, room, columns - field) {
+                (0, _) => match scalar::read(text, at) {
+                    Token::Value(number, next) => {
+                        room[0] = number;
+                        (1, next)
+                    }
                     other => return stop(end, Some(fault(text, row, field, other))),
                 },
+                read => read,
             };
-            *value = number;
+            field += count;
             at = skip_blanks(text, next);
         }
         if text.get(at).is_some_and(|&byte| !is_line_end(byte)) && !is_padding(text, at) {
             let rest = at..line_end(text, at);
-            return stop(end, Some(Fault { flaw: Flaw::RowTooLong, row, field: job.columns, token: rest }));
+            return stop(end, Some(Fault { flaw: Flaw::RowTooLong, row, field: columns, token: rest }));
         }
         end = at;
     }
-    RowsRead { rows: out.len() / job.columns, end, fault: None }
+    RowsRead { rows: out.len() / columns, end, fault: None }
+}
+
+/// What [`rows`] asks for, by a reader of one number.
+#[inline(always)]
+pub(super) fn one(read: Option<(f64, usize)>, at: usize, room: &mut [f64]) -> (usize, usize) {
+    let Some((value, end)) = read else { return (0, at) };
+    room[0] = value;
+    (1, end)
 }
 
 /// Number of lines from `start` on that hold more than blanks and padding.

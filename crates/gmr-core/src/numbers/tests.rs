@@ -21,10 +21,12 @@ fn print(values: &[f64], columns: usize) -> String {
     String::from_utf8(out).unwrap()
 }
 
-/// A blank tail lets a short token be taken by the readers that look at 16 bytes.
+/// A blank tail and room for eight let a token be taken by the readers that look at so much at once, and a short tail
+/// by those that look at 16 bytes.
 fn read_one(token: &str) -> Option<u64> {
-    let text = format!("{token}                 ");
-    let values: Vec<_> = Isa::available().map(|isa| read_on(isa, text.as_bytes(), 1, 1).0).collect();
+    let texts = [format!("{token:<120}"), format!("{token}{:17}", "")];
+    let read = |isa| texts.iter().map(move |text| read_on(isa, text.as_bytes(), 1, 8).0);
+    let values: Vec<_> = Isa::available().flat_map(read).collect();
     assert!(values.windows(2).all(|pair| pair[0] == pair[1]), "instruction sets differ on {token:?}");
     values[0].first().copied()
 }
@@ -67,6 +69,27 @@ fn decimal_text() -> impl Strategy<Value = String> {
     ]
 }
 
+/// Tokens, mostly short decimals, with what stands behind each: mostly a space, and a line's end after so many.
+fn rows_of_tokens(columns: usize) -> impl Strategy<Value = String> {
+    let token = prop_oneof![
+        60 => "-?[0-9]{1,3}\\.[0-9]{1,6}",
+        20 => "-?[0-9]{0,8}\\.?[0-9]{1,7}",
+        2 => "-?[0-9]{1,2}\\.[0-9]{1,4}e-?[0-9]{1,2}",
+        2 => "-?[0-9]\\.[0-9]{11,18}",
+        1 => "[-.0-9]{1,18}",
+        1 => "[-+.eE]{1,2}[0-9]{0,3}[-+.eE]{0,2}",
+    ];
+    let blank =
+        prop_oneof![80 => Just(" "), 8 => Just("\t"), 4 => Just("  "), 1 => Just("\x0b"), 1 => Just("\n")];
+    let line_end = prop_oneof![40 => Just("\n"), 40 => Just(" \r\n"), 4 => Just("\n \n"), 1 => Just(" ")];
+    proptest::collection::vec((token, blank, line_end), 1..80).prop_map(move |tokens| {
+        let behind =
+            |k: usize, blank, line_end| if (k + 1).is_multiple_of(columns) { line_end } else { blank };
+        let tokens = tokens.into_iter().enumerate();
+        tokens.map(|(k, (token, blank, line_end))| token + behind(k, blank, line_end)).collect()
+    })
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: if cfg!(miri) { 24 } else { 4000 }, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -101,6 +124,16 @@ proptest! {
         let scalar = read_on(Isa::Scalar, text.as_bytes(), columns, 40);
         for isa in Isa::available() {
             prop_assert_eq!(&read_on(isa, text.as_bytes(), columns, 40), &scalar);
+        }
+    }
+
+    #[test]
+    fn all_instruction_sets_see_the_same_in_rows_of_tokens(
+        (columns, text) in (1..30_usize).prop_flat_map(|columns| (Just(columns), rows_of_tokens(columns))),
+    ) {
+        let scalar = read_on(Isa::Scalar, text.as_bytes(), columns, 40);
+        for isa in Isa::available() {
+            prop_assert_eq!(&read_on(isa, text.as_bytes(), columns, 40), &scalar, "{:?}", text);
         }
     }
 
@@ -211,7 +244,7 @@ fn what_is_no_finite_decimal_is_refused_where_it_stands() {
         "\x01",
         "1\u{fffd}",
     ] {
-        let text = format!("1 2\n3 {token} \n5 6\n");
+        let text = format!("1 2\n3 {token} \n{}", "5 6\n".repeat(40));
         let found = fault(&text, 2);
         assert_eq!((found.flaw, found.row, found.field), (Flaw::NotANumber, 1, 1), "{token}");
         assert_eq!(&text[found.token.clone()], token);
