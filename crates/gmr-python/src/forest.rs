@@ -6,8 +6,8 @@ use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArra
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::arrays::unwritten;
 use crate::kinematics::{EulerRows, PyTopology, input, to_vec, value_error};
-use crate::rotation::zeros;
 
 /// A skeleton in one of its configurations.
 #[pyclass(name = "Forest", module = "gmr._core", frozen)]
@@ -150,8 +150,8 @@ fn carried<'py>(
     let job = Configure { from, to, offsets, translated, pose, frame_count, slots, joints, threads };
     let after = job.translated_after();
     let slot_count = slots.map_or(to.topology().slot_count(), <[i32]>::len);
-    let rotations = zeros::<f64>(py, [frame_count, slot_count, 4])?;
-    let translations = zeros::<f64>(py, [frame_count, after.len(), 3])?;
+    let rotations: Bound<'py, PyArray3<f64>> = unwritten(py, (frame_count, slot_count, 4))?;
+    let translations: Bound<'py, PyArray3<f64>> = unwritten(py, (frame_count, after.len(), 3))?;
     {
         let (mut rotations, mut translations) = (rotations.readwrite(), translations.readwrite());
         let out =

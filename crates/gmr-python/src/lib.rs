@@ -4,6 +4,7 @@
 use pyo3::prelude::*;
 
 mod amc;
+mod arrays;
 mod character;
 mod forest;
 mod index;

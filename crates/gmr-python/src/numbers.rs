@@ -6,6 +6,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
+use crate::arrays::unwritten;
+
 /// Kind, row and field from 0, first byte and the byte after the token.
 type FaultTuple = (&'static str, usize, usize, usize, usize);
 
@@ -24,7 +26,7 @@ fn parse_rows<'py>(
     let text = data.as_bytes();
     let job = ParseRows { text, start: start.min(text.len()), columns };
     let room = limit.min(job.most_rows());
-    let rows = unwritten(py, room, columns)?;
+    let rows: Bound<'py, PyArray2<f64>> = unwritten(py, (room, columns))?;
     let read = {
         let mut out = rows.readwrite();
         let out = out.as_slice_mut()?;
@@ -37,16 +39,11 @@ fn parse_rows<'py>(
     Ok((rows, read.end, fault))
 }
 
-/// An array to write into; filling it with zeros first would take a tenth of the time of reading.
-fn unwritten(py: Python<'_>, rows: usize, columns: usize) -> PyResult<Bound<'_, PyArray2<f64>>> {
-    Ok(py.import("numpy")?.call_method1("empty", ((rows, columns),))?.cast_into()?)
-}
-
 /// A copy of the first rows, so that the room kept for the others can be given back.
 fn first_rows<'py>(rows: &Bound<'py, PyArray2<f64>>, count: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let columns = rows.shape()[1];
     let read = rows.readonly();
-    let kept = unwritten(rows.py(), count, columns)?;
+    let kept: Bound<'py, PyArray2<f64>> = unwritten(rows.py(), (count, columns))?;
     kept.readwrite().as_slice_mut()?.copy_from_slice(&read.as_slice()?[..count * columns]);
     Ok(kept)
 }

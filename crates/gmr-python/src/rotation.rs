@@ -4,10 +4,11 @@ use gmr_core::lanes::Real;
 use gmr_core::rotation::{self, EulerColumns};
 use numpy::{
     Element, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
-    PyUntypedArrayMethods, dtype,
+    PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 
+use crate::arrays::unwritten;
 use crate::kinematics::{input, output, to_vec, triples, value_error};
 
 /// Local rotations of all slots, from rows (F, C) of degrees into `out` (F, S, 4), float32 or float64.
@@ -85,7 +86,8 @@ fn quaternions_to_euler<'py>(
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
     let axes = triples(&axes, "axes")?;
     let quaternions = input::<f64>(quaternions.as_any(), "quaternions", 4)?;
-    let degrees = zeros::<f64>(py, [quaternions.shape()[0], quaternions.shape()[1], 3])?;
+    let degrees: Bound<'py, PyArray3<f64>> =
+        unwritten(py, (quaternions.shape()[0], quaternions.shape()[1], 3))?;
     let mut writing = degrees.readwrite();
     let (quaternions, out) = (quaternions.as_slice()?, writing.as_slice_mut()?);
     py.detach(|| rotation::quaternions_to_euler(quaternions, &axes, out)).map_err(value_error)?;
@@ -113,18 +115,12 @@ fn resample<'py, T: Real + Element>(
     times: &[f64],
 ) -> PyResult<Bound<'py, PyAny>> {
     let slot_count = quaternions.shape()[1];
-    let frames = zeros::<T>(py, [times.len(), slot_count, 4])?;
+    let frames: Bound<'py, PyArray3<T>> = unwritten(py, (times.len(), slot_count, 4))?;
     let mut writing = frames.readwrite();
     let (quaternions, out) = (quaternions.as_slice()?, writing.as_slice_mut()?);
     py.detach(|| rotation::slerp_frames(quaternions, slot_count, times, out)).map_err(value_error)?;
     drop(writing);
     Ok(frames.into_any())
-}
-
-/// An array made by NumPy itself, whose MemoryError is raised where it does not fit; `PyArray3::zeros` would panic.
-pub(crate) fn zeros<T: Element>(py: Python<'_>, shape: [usize; 3]) -> PyResult<Bound<'_, PyArray3<T>>> {
-    let array = py.import("numpy")?.call_method1("zeros", (shape.to_vec(), dtype::<T>(py)))?;
-    Ok(array.cast_into()?)
 }
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -33,7 +33,7 @@ fn prefetch_line<T>(_place: &T) {}
 /// Copies `source` to `target` past the caches. [`settle`] before another thread may read it.
 #[cfg(all(target_arch = "x86_64", not(miri)))]
 pub(crate) fn stream<T: super::Real>(source: &[T], target: &mut [T]) {
-    use std::arch::x86_64::{_mm_loadu_si128, _mm_stream_si128};
+    use std::arch::x86_64::{__m128i, _mm_loadu_si128, _mm_stream_si128};
     assert_eq!(source.len(), target.len(), "copy of another length");
     let head = (target.as_ptr().align_offset(LINE)).min(target.len());
     let lines = (target.len() - head) * size_of::<T>() / LINE;
@@ -43,10 +43,13 @@ pub(crate) fn stream<T: super::Real>(source: &[T], target: &mut [T]) {
     // SAFETY: `lines` whole lines lie in both arrays from `head` on, where the target is aligned to a line; SSE2
     // belongs to every x86-64.
     unsafe {
-        let (mut from, mut to) = (source.as_ptr().add(head).cast(), target.as_mut_ptr().add(head).cast());
-        for _ in 0..4 * lines {
-            _mm_stream_si128(to, _mm_loadu_si128(from));
-            (from, to) = (from.add(1), to.add(1));
+        let mut from: *const __m128i = source.as_ptr().add(head).cast();
+        let mut to: *mut __m128i = target.as_mut_ptr().add(head).cast();
+        for _ in 0..lines {
+            for k in 0..LINE / size_of::<__m128i>() {
+                _mm_stream_si128(to.add(k), _mm_loadu_si128(from.add(k)));
+            }
+            (from, to) = (from.add(4), to.add(4));
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::euler::EulerColumns;
-use super::half_angle::half_angles;
+use super::half_angle::{Steps, half_angles};
 use super::quaternion::multiply_axis;
 use crate::lanes::rows::{SourceRows, groups};
 use crate::lanes::{Lanes, Real};
@@ -18,6 +18,7 @@ pub(crate) struct EulerBlock<L: Lanes> {
     angles: Vec<[L; 2]>,
     /// Each column as it is, where it is plain.
     channels: Vec<L>,
+    steps: Steps<L>,
     /// For each slot the columns and axes of its angles, in composing order.
     turns: Vec<Vec<(usize, u8)>>,
 }
@@ -45,6 +46,7 @@ impl<L: Lanes> EulerBlock<L> {
             channel_groups: groups(&is_plain),
             angles: vec![[zero; 2]; room],
             channels: vec![zero; room],
+            steps: Steps::new(),
             turns,
         }
     }
@@ -54,7 +56,7 @@ impl<L: Lanes> EulerBlock<L> {
     pub(crate) fn load(&mut self, rows: &mut SourceRows<'_, f64>, frames: Range<usize>) {
         let (block, stride) = rows.block(&frames, L::WIDTH);
         for &group in &self.angle_groups {
-            let four = half_angles(L::load_doubles(&block[group..], stride));
+            let four = half_angles(L::load_doubles(&block[group..], stride), &self.steps);
             self.angles[group..group + 4].copy_from_slice(&four);
         }
         for &group in &self.channel_groups {

@@ -14,7 +14,7 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0;
 /// Whole turns are taken off in `f64` degrees, where that is exact; what is left goes through polynomials of the
 /// register's own width, within 2e-7 (f32) or 6e-16 (f64). NaN and infinities give NaN.
 #[inline(always)]
-pub(super) fn half_angles<L: Lanes>(degrees: [L::Doubles; 4]) -> [[L; 2]; 4] {
+pub(super) fn half_angles<L: Lanes>(degrees: [L::Doubles; 4], steps: &Steps<L>) -> [[L; 2]; 4] {
     let [mut a, mut b, mut c, mut d] = degrees;
     if is_large(a) | is_large(b) | is_large(c) | is_large(d) {
         a = a.changed(without_turns);
@@ -22,7 +22,43 @@ pub(super) fn half_angles<L: Lanes>(degrees: [L::Doubles; 4]) -> [[L; 2]; 4] {
         c = c.changed(without_turns);
         d = d.changed(without_turns);
     }
-    [half_angle(a), half_angle(b), half_angle(c), half_angle(d)]
+    let x: [L; 4] = [half(a), half(b), half(c), half(d)];
+    let squared = [x[0] * x[0], x[1] * x[1], x[2] * x[2], x[3] * x[3]];
+    let [sines, cosines] = steps.polynomials(squared);
+    [
+        [x[0] * sines[0], cosines[0]],
+        [x[1] * sines[1], cosines[1]],
+        [x[2] * sines[2], cosines[2]],
+        [x[3] * sines[3], cosines[3]],
+    ]
+}
+
+/// The coefficients of sine and cosine side by side, a register for each, those of the highest power first.
+///
+/// A step of Horner's scheme waits for the one before. Eight sums that take their steps together leave the processor
+/// enough to do meanwhile; that the steps lie in memory keeps the compiler from taking each sum's in one go.
+pub(crate) struct Steps<L>(Vec<[L; 2]>);
+
+impl<L: Lanes> Steps<L> {
+    pub(crate) fn new() -> Self {
+        let (sine, cosine) = (L::Real::SINE, L::Real::COSINE);
+        // A first step to zero makes the sum what it would begin with.
+        let at =
+            |power: usize| [sine, cosine].map(|c| L::splat(c.get(power).copied().unwrap_or(L::Real::ZERO)));
+        Self((0..sine.len().max(cosine.len())).rev().map(at).collect())
+    }
+
+    /// Both polynomials of each of four numbers.
+    #[inline(always)]
+    fn polynomials(&self, x: [L; 4]) -> [[L; 4]; 2] {
+        let zero = L::splat(L::Real::ZERO);
+        let ([mut a, mut b, mut c, mut d], [mut e, mut f, mut g, mut h]) = ([zero; 4], [zero; 4]);
+        for &[sine, cosine] in std::hint::black_box(&self.0[..]) {
+            (a, b, c, d) = (a * x[0] + sine, b * x[1] + sine, c * x[2] + sine, d * x[3] + sine);
+            (e, f, g, h) = (e * x[0] + cosine, f * x[1] + cosine, g * x[2] + cosine, h * x[3] + cosine);
+        }
+        [[a, b, c, d], [e, f, g, h]]
+    }
 }
 
 #[inline(always)]
@@ -37,30 +73,27 @@ fn without_turns(degrees: &mut [f64]) {
     degrees.iter_mut().filter(|angle| **angle * **angle > LARGE_SQUARED).for_each(|angle| *angle %= 720.0);
 }
 
-/// Sine and cosine of half of one angle in degrees, up to a sign that both share; see [`half_angles`].
+/// Half of an angle in degrees without its whole turns, in radians.
 #[inline(always)]
-fn half_angle<L: Lanes>(degrees: L::Doubles) -> [L; 2] {
+fn half<L: Lanes>(degrees: L::Doubles) -> L {
     let number = L::Doubles::splat;
     let turns = (degrees * number(1.0 / 360.0) + number(ROUNDER)) - number(ROUNDER);
     let rest = degrees - turns * number(360.0);
-    let x = L::narrow(rest * number(std::f64::consts::PI / 360.0));
-    let squared = x * x;
-    [x * polynomial(L::Real::SINE, squared), polynomial(L::Real::COSINE, squared)]
+    L::narrow(rest * number(std::f64::consts::PI / 360.0))
 }
 
 /// [`half_angles`] of one plain number.
-pub(super) fn half_angle_of<T: Real>(degrees: f64) -> [T; 2] {
-    half_angles::<T>([degrees, 0.0, 0.0, 0.0])[0]
+pub(super) fn half_angle_of<T: Real>(mut degrees: f64) -> [T; 2] {
+    if is_large(degrees) {
+        degrees = degrees.changed(without_turns);
+    }
+    let x = half::<T>(degrees);
+    [x * polynomial(T::SINE, x * x), polynomial(T::COSINE, x * x)]
 }
 
 /// The polynomial with these coefficients, the constant first.
-#[inline(always)]
-fn polynomial<L: Lanes>(coefficients: &'static [L::Real], x: L) -> L {
-    let mut sum = L::splat(coefficients[coefficients.len() - 1]);
-    for &coefficient in coefficients.iter().rev().skip(1) {
-        sum = sum * x + L::splat(coefficient);
-    }
-    sum
+fn polynomial<T: Real>(coefficients: &[T], x: T) -> T {
+    coefficients.iter().rev().fold(T::ZERO, |sum, &coefficient| sum * x + coefficient)
 }
 
 #[cfg(test)]
