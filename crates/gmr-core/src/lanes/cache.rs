@@ -38,8 +38,12 @@ pub(crate) fn stream<T: super::Real>(source: &[T], target: &mut [T]) {
     let head = (target.as_ptr().align_offset(LINE)).min(target.len());
     let lines = (target.len() - head) * size_of::<T>() / LINE;
     let tail = head + lines * LINE / size_of::<T>();
-    target[..head].copy_from_slice(&source[..head]);
-    target[tail..].copy_from_slice(&source[tail..]);
+    if head > 0 {
+        target[..head].copy_from_slice(&source[..head]);
+    }
+    if tail < target.len() {
+        target[tail..].copy_from_slice(&source[tail..]);
+    }
     // SAFETY: `lines` whole lines lie in both arrays from `head` on, where the target is aligned to a line; SSE2
     // belongs to every x86-64.
     unsafe {

@@ -136,10 +136,14 @@ impl<T: Real> Kernel<T> for Conversion<'_, T> {
         let mut rows = SourceRows::new(self.rows, self.column_count);
         let is_large = cache::is_large(self.out);
         let mut out = TargetRows::new(self.out, 4 * slot_count, is_large);
+        let line = cache::LINE / size_of::<f64>();
+        let share = (L::WIDTH * self.column_count).div_ceil(slot_count.max(1)).next_multiple_of(line);
         for frames in blocks::<L>(out.row_count()) {
             block.load(&mut rows, frames.clone());
+            let next = (frames.start + L::WIDTH) * self.column_count;
             let (target, stride) = out.block(&frames, L::WIDTH);
             for (slot, axes) in self.turns.iter().enumerate() {
+                cache::prefetch(self.rows, next + slot * share, share);
                 let q = block.quaternion(slot);
                 let q = axes.as_ref().map_or(q, |axes| about(axes, q));
                 L::store_columns(q, &mut target[4 * slot..], stride);

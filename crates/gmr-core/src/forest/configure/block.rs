@@ -48,10 +48,8 @@ fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Rea
     let identity = [zero, zero, zero, L::splat(L::Real::ONE)];
     let mut rotations = vec![identity; plan.solving.turns.len()];
     let mut positions = vec![[zero; 3]; plan.solving.bones.len()];
-    let mut turned = vec![identity; plan.turns.len()];
     let mut moved = vec![[zero; 3]; plan.vectors.len()];
-    let (turned_width, moved_width) = (4 * turned.len(), 3 * moved.len());
-    let turned_groups = groups((0..turned.len()).zip(0..), 4, turned_width);
+    let (turned_width, moved_width) = (4 * plan.turns.len(), 3 * moved.len());
     let moved_groups = groups((0..moved.len()).zip(0..), 3, moved_width);
     let mut rotations_out = TargetRows::new(out.rotations.unwrap_or(&mut []), turned_width, is_large);
     let mut translations_out = TargetRows::new(out.positions.unwrap_or(&mut []), moved_width, is_large);
@@ -59,13 +57,20 @@ fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Rea
         source.load(range.start + block.start..range.start + block.end);
         solve(&plan.solving, &source, &mut rotations, &mut positions);
         source.prefetch_translations();
-        for (q, turn) in turned.iter_mut().zip(&plan.turns) {
-            *q = match *turn {
-                Turn::Copy(slot) => source.rotation(slot),
-                Turn::World(own) => straighten(rotations[own]),
-                Turn::Between(above, own) => straighten(multiply_inverse(rotations[above], rotations[own])),
-                Turn::Back(above) => straighten(multiply_inverse(rotations[above], identity)),
-            };
+        if turned_width > 0 {
+            let (rows, stride) = rotations_out.block(&block, L::WIDTH);
+            for (slot, turn) in plan.turns.iter().enumerate() {
+                let q = match *turn {
+                    Turn::Copy(slot) => source.rotation(slot),
+                    Turn::World(own) => straighten(rotations[own]),
+                    Turn::Between(above, own) => {
+                        straighten(multiply_inverse(rotations[above], rotations[own]))
+                    }
+                    Turn::Back(above) => straighten(multiply_inverse(rotations[above], identity)),
+                };
+                L::store_columns(q, &mut rows[4 * slot..], stride);
+            }
+            rotations_out.finish(&block, L::WIDTH);
         }
         for (v, vector) in moved.iter_mut().zip(&plan.vectors) {
             *v = match *vector {
@@ -84,7 +89,6 @@ fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Rea
                 }
             };
         }
-        write(&turned_groups, turned.as_flattened(), &mut rotations_out, &block);
         write(&moved_groups, moved.as_flattened(), &mut translations_out, &block);
     }
 }
