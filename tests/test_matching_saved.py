@@ -74,6 +74,37 @@ def test_an_independent_reader_finds_the_arrays(tmp_path: Path) -> None:
     np.testing.assert_array_equal(arrays["steps"][:, :2], saved.displacements)
 
 
+def test_an_independent_reader_decodes_rows_and_boxes_within_their_rounding(tmp_path: Path) -> None:
+    saved = Database.build(WALKS)
+    saved.save(tmp_path / "walks.gmrm")
+    arrays = load_file(tmp_path / "walks.gmrm")
+    dims = saved.features.shape[1]
+    frames = arrays["index_frames"]
+    axes = arrays["index_axes"].transpose(1, 0, 2).reshape(dims, -1)[:, :dims]
+    np.testing.assert_allclose(axes.T @ axes, np.eye(dims), atol=1e-12)
+    # Rows by leaf, NaN where a lane holds none.
+    is_held = frames != 2**32 - 1
+    rows = np.full((*frames.shape, dims), np.nan)
+    rows[is_held] = (saved.features[frames[is_held]] - arrays["index_mean"]) @ axes
+
+    grids = arrays["index_grids"].astype(np.float64)
+    parents = np.arange(len(frames)) // 8
+    steps = 4 / grids[:, -2]
+    codes = np.moveaxis(arrays["index_row_codes"], 1, 2).reshape(*frames.shape, -1)[..., :dims]
+    decoded = grids[parents, None, :dims] + codes * steps[parents, None, None]
+    off = np.abs(decoded - rows) / steps[parents, None, None]
+    assert np.nanmax(off) < 0.52
+
+    level = slice(0, -(-len(frames) // 8))
+    edges = np.moveaxis(arrays["index_box_codes"][level], 1, 3).reshape(-1, 2, 8, codes.shape[-1] + dims % 2)
+    edges = grids[level, None, None, :dims] + edges[..., :dims] * steps[level, None, None, None]
+    lower, upper = (edges[:, side].reshape(-1, dims)[: len(frames)] for side in (0, 1))
+    slack = 0.02 * steps[parents, None]
+    assert (lower - slack <= np.nanmin(rows, axis=1)).all()
+    assert (upper + slack >= np.nanmax(rows, axis=1)).all()
+    assert (upper - lower).max() < 40 * (np.nanmax(rows, axis=1) - np.nanmin(rows, axis=1)).max()
+
+
 def test_what_is_no_saved_database_is_refused_in_a_sentence(tmp_path: Path) -> None:
     path = tmp_path / "walks.gmrm"
     with pytest.raises(FileNotFoundError):
@@ -120,9 +151,9 @@ def test_an_index_of_other_rows_is_found_by_the_whole_check(tmp_path: Path) -> N
 def test_a_file_of_an_older_version_says_how_to_make_it_anew(tmp_path: Path) -> None:
     path = tmp_path / "walks.gmrm"
     Database.build(WALKS).save(path)
-    path.write_bytes(path.read_bytes().replace(rb"\"version\":2", rb"\"version\":1", 1))
+    path.write_bytes(path.read_bytes().replace(rb"\"version\":3", rb"\"version\":1", 1))
     with pytest.raises(
-        FormatError, match=r"of version 1, .* version 2; build the database of its clips again"
+        FormatError, match=r"of version 1, .* version 3; build the database of its clips again"
     ):
         Database.open(path)
 

@@ -55,31 +55,41 @@ fn edited(edits: &[u8]) -> Vec<u8> {
 
 /// A file whose sums are those of its blocks, as docs/matching.md defines them.
 fn resealed(mut file: Vec<u8>) -> Vec<u8> {
-    let leaves = ["index_rows", "index_frames", "index_tags"].map(array);
-    let nodes = ["index_boxes", "index_lowest", "index_node_tags"].map(array);
+    let leaves = ["index_rows", "index_frames", "index_tags", "index_row_codes"].map(array);
+    let nodes = ["index_boxes", "index_lowest", "index_node_tags", "index_grids", "index_box_codes"].map(array);
+    let layout = ["index_order", "index_mean", "index_axes"].map(array);
     let leaf_count = leaves[1].len() / 32;
     let node_count = nodes[1].len() / 32;
-    let blocks = (0..leaf_count).map(|leaf| (&leaves, leaf, leaf_count, leaf));
-    let blocks = blocks.chain((0..node_count).map(|node| (&nodes, node, node_count, leaf_count + node)));
-    let sums: Vec<u8> = blocks
-        .flat_map(|(arrays, at, count, block)| {
-            let mut lanes = [0_u32; 8];
-            for array in arrays {
-                let size = array.len() / count;
-                for line in file[array.clone()][at * size..][..size].chunks_exact(32) {
-                    for (lane, word) in lanes.iter_mut().zip(line.as_chunks::<4>().0) {
-                        *lane = (lane.rotate_left(5) ^ u32::from_le_bytes(*word)).wrapping_mul(0x9e37_79b1);
-                    }
-                }
-            }
-            let sum = lanes.iter().fold(block as u64, |sum, &lane| {
-                (sum.rotate_left(29) ^ u64::from(lane)).wrapping_mul(0x9e37_79b9_7f4a_7c15)
-            });
-            sum.to_le_bytes()
-        })
-        .collect();
+    let parts = |arrays: &[Range<usize>], at: usize, count: usize| -> Vec<Vec<u8>> {
+        let part = |array: &Range<usize>| {
+            let size = array.len() / count;
+            file[array.clone()][at * size..][..size].to_vec()
+        };
+        arrays.iter().map(part).collect()
+    };
+    let blocks = (0..leaf_count).map(|leaf| parts(&leaves, leaf, leaf_count));
+    let blocks = blocks.chain((0..node_count).map(|node| parts(&nodes, node, node_count)));
+    let blocks = blocks.chain([vec![parts(&layout, 0, 1).concat()]]);
+    let sums: Vec<u8> = blocks.enumerate().flat_map(|(block, arrays)| sum(block, &arrays).to_le_bytes()).collect();
     file[array("index_sums")].copy_from_slice(&sums);
     file
+}
+
+/// The sum of a block, each of whose arrays is continued by zeros to a whole line.
+fn sum(block: usize, arrays: &[Vec<u8>]) -> u64 {
+    let mut lanes = [0_u32; 8];
+    for array in arrays {
+        let mut array = array.clone();
+        array.resize(array.len().next_multiple_of(32), 0);
+        for line in array.chunks_exact(32) {
+            for (lane, word) in lanes.iter_mut().zip(line.as_chunks::<4>().0) {
+                *lane = (lane.rotate_left(5) ^ u32::from_le_bytes(*word)).wrapping_mul(0x9e37_79b1);
+            }
+        }
+    }
+    lanes.iter().fold(block as u64, |sum, &lane| {
+        (sum.rotate_left(29) ^ u64::from(lane)).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    })
 }
 
 /// Where an array lies in the sound file.

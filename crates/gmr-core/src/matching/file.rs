@@ -36,7 +36,7 @@ pub use fault::{Fault, FileError};
 
 /// The string of the container's metadata that tells what the arrays do not.
 const KEY: &str = "gmr_matching";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// Where arrays begin: a whole number of cache lines into the file.
 const LINE: usize = 64;
@@ -93,8 +93,7 @@ pub fn save(database: &Database, labels: &Labels, path: &Path) -> Result<(), Fil
     let write = || -> Result<(), Fault> {
         let clips: Vec<[u32; 3]> =
             database.clips().iter().map(|clip| [clip.rows.start, clip.rows.end, clip.bones]).collect();
-        let index = database.index.in_eights(database.features(), database.candidates(), database.tags())?;
-        let index = index.arrays();
+        let index = database.index.arrays();
         let (header, arrays) = laid_out(database, labels, &clips, &index)?;
         // Where a link stands, the file that it leads to is replaced.
         let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());

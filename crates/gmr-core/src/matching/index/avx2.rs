@@ -2,11 +2,10 @@
 
 use std::arch::x86_64::*;
 
-use super::Query;
-use super::best::Best;
-use super::metric::Metric;
-use super::traverse::{self, Kernel};
-use super::tree::{Edges, Lanes, Tree, edges};
+use super::Work;
+use super::codes::Pair;
+use super::traverse::Kernel;
+use super::tree::{Edges, Lanes, edges};
 use crate::Isa;
 
 /// Proof that this machine has AVX2 and FMA.
@@ -18,36 +17,43 @@ impl Avx2 {
         Isa::Avx2.is_available().then_some(Self(()))
     }
 
-    /// As [`traverse::search`].
-    pub(super) fn search<M: Metric>(self, tree: &Tree<8>, query: &Query, best: &mut impl Best) {
+    /// Does the work with these kernels.
+    pub(super) fn run<T: Work>(self, work: T) -> T::Done {
         // SAFETY: a value of this type is only made where the machine has the instructions.
-        unsafe { search::<M>(self, tree, query, best) }
+        unsafe { run(self, work) }
     }
 }
 
 #[target_feature(enable = "avx2,fma")]
-fn search<M: Metric>(kernel: Avx2, tree: &Tree<8>, query: &Query, best: &mut impl Best) {
-    traverse::search::<8, _, M>(kernel, tree, query, best);
+fn run<T: Work>(kernel: Avx2, work: T) -> T::Done {
+    work.run(kernel)
+}
+
+/// Two numbers as they lie side by side.
+#[inline(always)]
+fn both([one, other]: [i16; 2]) -> i32 {
+    i32::from(one) & 0xffff | i32::from(other) << 16
 }
 
 impl Kernel<8> for Avx2 {
     type Sums = __m256;
+    type Gaps = __m256i;
 
     #[inline(always)]
     fn zero(self) -> __m256 {
-        // SAFETY: see `Avx2::search`.
+        // SAFETY: see `Avx2::run`.
         unsafe { _mm256_setzero_ps() }
     }
 
     #[inline(always)]
     fn difference(self, q: f32, row: &Lanes<8>) -> __m256 {
-        // SAFETY: see `Avx2::search`; the load reads the 8 numbers of `row`.
+        // SAFETY: see `Avx2::run`; the load reads the 8 numbers of `row`.
         unsafe { _mm256_sub_ps(_mm256_set1_ps(q), _mm256_loadu_ps(row.as_ptr())) }
     }
 
     #[inline(always)]
     fn gap(self, q: f32, edges: &Edges<8>) -> __m256 {
-        // SAFETY: see `Avx2::search`; the load reads the 8 pairs of `edges`.
+        // SAFETY: see `Avx2::run`; the load reads the 8 pairs of `edges`.
         unsafe {
             let q = _mm256_set1_ps(q);
             let edges = _mm256_loadu_si256(edges.as_ptr().cast());
@@ -59,19 +65,13 @@ impl Kernel<8> for Avx2 {
 
     #[inline(always)]
     fn add_squares(self, sums: __m256, difference: __m256) -> __m256 {
-        // SAFETY: see `Avx2::search`.
+        // SAFETY: see `Avx2::run`.
         unsafe { _mm256_add_ps(sums, _mm256_mul_ps(difference, difference)) }
     }
 
     #[inline(always)]
-    fn add_squares_fused(self, sums: __m256, difference: __m256) -> __m256 {
-        // SAFETY: see `Avx2::search`.
-        unsafe { _mm256_fmadd_ps(difference, difference, sums) }
-    }
-
-    #[inline(always)]
     fn add_weighted_squares(self, sums: __m256, weight: f32, difference: __m256) -> __m256 {
-        // SAFETY: see `Avx2::search`.
+        // SAFETY: see `Avx2::run`.
         unsafe {
             let squares = _mm256_mul_ps(difference, difference);
             _mm256_add_ps(sums, _mm256_mul_ps(_mm256_set1_ps(weight), squares))
@@ -80,19 +80,45 @@ impl Kernel<8> for Avx2 {
 
     #[inline(always)]
     fn add(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: see `Avx2::search`.
+        // SAFETY: see `Avx2::run`.
         unsafe { _mm256_add_ps(a, b) }
     }
 
     #[inline(always)]
+    fn no_gaps(self) -> __m256i {
+        // SAFETY: see `Avx2::run`.
+        unsafe { _mm256_setzero_si256() }
+    }
+
+    #[inline(always)]
+    fn add_gaps(self, gaps: __m256i, low: [i16; 2], high: [i16; 2], lower: &Pair, upper: &Pair) -> __m256i {
+        // SAFETY: see `Avx2::run`; the loads read the 16 bytes of `lower` and of `upper`.
+        unsafe {
+            let parts = |codes: &Pair| {
+                _mm256_slli_epi16::<2>(_mm256_cvtepu8_epi16(_mm_loadu_si128(codes.as_ptr().cast())))
+            };
+            let below = _mm256_sub_epi16(parts(lower), _mm256_set1_epi32(both(high)));
+            let above = _mm256_sub_epi16(_mm256_set1_epi32(both(low)), parts(upper));
+            let gap = _mm256_max_epi16(_mm256_max_epi16(below, above), _mm256_setzero_si256());
+            _mm256_add_epi32(gaps, _mm256_madd_epi16(gap, gap))
+        }
+    }
+
+    #[inline(always)]
+    fn in_units(self, gaps: __m256i, unit: f32) -> __m256 {
+        // SAFETY: see `Avx2::run`.
+        unsafe { _mm256_mul_ps(_mm256_cvtepi32_ps(gaps), _mm256_set1_ps(unit)) }
+    }
+
+    #[inline(always)]
     fn at_most(self, sums: __m256, limit: f32) -> u32 {
-        // SAFETY: see `Avx2::search`.
+        // SAFETY: see `Avx2::run`.
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(sums, _mm256_set1_ps(limit))) as u32 }
     }
 
     #[inline(always)]
     fn lowest(self, sums: __m256, among: u32) -> (usize, f32) {
-        // SAFETY: see `Avx2::search`.
+        // SAFETY: see `Avx2::run`.
         unsafe {
             let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
             let asked = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(among as i32), bits), bits);

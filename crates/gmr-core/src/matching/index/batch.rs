@@ -2,7 +2,10 @@
 
 use std::ops::Range;
 
+use super::best::{Nearest, Ranked};
+use super::codes::MOST_CODED;
 use super::error::{check_weights, first_not_finite};
+use super::tree::W;
 use super::{Hit, Index, IndexError, Query};
 use crate::error::ShapeError;
 use crate::parallel::for_each_chunk;
@@ -27,10 +30,32 @@ pub struct Batch<'a> {
 }
 
 /// Queries that one thread takes at a time: enough to make the taking cheap, few enough to share evenly.
-const QUERIES_A_PIECE: usize = 64;
+const QUERIES_A_PIECE: usize = 256;
+
+/// Hits that are kept for one slab, unless a single query asks for more.
+const MOST_HITS_A_SLAB: usize = 1 << 20;
+
+/// Axes by whose coordinates queries are put in order: most of what tells rows of motion apart.
+const SORTED_AXES: usize = 5;
+
+/// The bits of a number below 16, [`SORTED_AXES`] places apart: as many of them, each one place further, are a place on
+/// a curve along which near places are mostly near (Morton 1966).
+const SPREAD: [u32; 16] = {
+    let mut spread = [0; 16];
+    let mut number = 0;
+    while number < 16 {
+        let mut bit = 0;
+        while bit < 4 {
+            spread[number] |= (number as u32 >> bit & 1) << (bit * SORTED_AXES);
+            bit += 1;
+        }
+        number += 1;
+    }
+    spread
+};
 
 /// Queries answered between two looks at whether to go on: well under a second of work.
-const QUERIES_A_SLAB: usize = 256 * QUERIES_A_PIECE;
+const QUERIES_A_SLAB: usize = 64 * QUERIES_A_PIECE;
 
 impl Batch<'_> {
     fn check(&self, dims: usize) -> Result<(), IndexError> {
@@ -90,18 +115,73 @@ impl Index {
         if k == 0 {
             return Ok(());
         }
-        for (slab, hits) in hits.chunks_mut(k.saturating_mul(QUERIES_A_SLAB)).enumerate() {
+        if batch.count == 1 && goes_on() {
+            self.rank(&batch.query(0, self.dims), hits);
+            return self.check_soundness();
+        }
+        // Many hits a query need room twice.
+        let slab_size = (MOST_HITS_A_SLAB / k).clamp(1, QUERIES_A_SLAB);
+        for (slab, hits) in hits.chunks_mut(k.saturating_mul(slab_size)).enumerate() {
             if !goes_on() {
                 break;
             }
-            for_each_chunk(hits, k * QUERIES_A_PIECE, batch.threads, |piece, hits| {
-                let first = slab * QUERIES_A_SLAB + piece * QUERIES_A_PIECE;
-                for (i, hits) in hits.chunks_exact_mut(k).enumerate() {
-                    self.rank(&batch.query(first + i, self.dims), hits);
-                }
+            let first = slab * slab_size;
+            let order = self.side_by_side(batch, first..first + hits.len() / k);
+            let mut found = vec![Hit::NONE; hits.len()];
+            for_each_chunk(&mut found, k * QUERIES_A_PIECE, batch.threads, |piece, found| {
+                self.answer(batch, &order[piece * QUERIES_A_PIECE..], k, found);
             });
             self.check_soundness()?;
+            for (&query, found) in order.iter().zip(found.chunks_exact(k)) {
+                hits[(query as usize - first) * k..][..k].copy_from_slice(found);
+            }
         }
         Ok(())
+    }
+
+    /// Answers the first queries of `order`, one for each `k` of `hits`.
+    fn answer(&self, batch: &Batch, order: &[u32], k: usize, hits: &mut [Hit]) {
+        let queries = order.iter().map(|&query| batch.query(query as usize, self.dims));
+        if k == 1 {
+            let asked = queries.zip(hits);
+            self.visit_all(
+                batch.weights,
+                asked.map(|(query, hit)| {
+                    let best = Nearest::new(hit, query.limit());
+                    (query, best)
+                }),
+            );
+        } else {
+            let asked = queries.zip(hits.chunks_exact_mut(k));
+            self.visit_all(
+                batch.weights,
+                asked.map(|(query, hits)| {
+                    let best = Ranked::new(hits, query.limit());
+                    (query, best)
+                }),
+            );
+        }
+    }
+
+    /// The queries in an order in which those that look at the same part of the tree mostly follow each other: what one
+    /// has brought into the cache serves the next.
+    fn side_by_side(&self, batch: &Batch, queries: Range<usize>) -> Vec<u32> {
+        let root = self.tree.levels.node_count().checked_sub(1).filter(|_| self.dims <= MOST_CODED);
+        let Some(root) = root else { return queries.map(|query| query as u32).collect() };
+        let tree = self.tree.view();
+        let grid = tree.grid(root);
+        let mut keyed: Vec<(u32, u32)> = queries
+            .map(|query| {
+                let mut turned = [[0.0; W]];
+                tree.axes.turn(&batch.queries[query * self.dims..][..self.dims], &mut turned);
+                let first = turned[0].iter().take(SORTED_AXES.min(self.dims)).enumerate();
+                let place = first.fold(0, |place, (axis, &q)| {
+                    place | SPREAD[usize::from(grid.steps(axis, q) as u8 >> 4)] << (SORTED_AXES - 1 - axis)
+                });
+                (place, query as u32)
+            })
+            .collect();
+        keyed.sort_unstable();
+        keyed.into_iter().map(|(_, query)| query).collect()
     }
 }

@@ -8,20 +8,41 @@ pub(super) trait Best {
     fn bound(&self) -> Hit;
     /// Keeps a hit that beats the bound.
     fn offer(&mut self, hit: Hit);
+    /// Puts the hits in order, [`Hit::NONE`] behind them, and says how many there are.
+    fn finish(self) -> usize;
 }
 
 /// The one best frame.
-pub(super) struct Nearest(pub(super) Hit);
+pub(super) struct Nearest<'a> {
+    hit: &'a mut Hit,
+    start: Hit,
+}
 
-impl Best for Nearest {
+impl<'a> Nearest<'a> {
+    /// Keeps the best that beats `start` in `hit`.
+    pub(super) fn new(hit: &'a mut Hit, start: Hit) -> Self {
+        *hit = start;
+        Self { hit, start }
+    }
+}
+
+impl Best for Nearest<'_> {
     #[inline(always)]
     fn bound(&self) -> Hit {
-        self.0
+        *self.hit
     }
 
     #[inline(always)]
     fn offer(&mut self, hit: Hit) {
-        self.0 = hit;
+        *self.hit = hit;
+    }
+
+    fn finish(self) -> usize {
+        let found = *self.hit != self.start;
+        if !found {
+            *self.hit = Hit::NONE;
+        }
+        usize::from(found)
     }
 }
 
@@ -36,14 +57,6 @@ impl<'a> Ranked<'a> {
     /// Keeps the best that beat `limit`.
     pub(super) fn new(hits: &'a mut [Hit], limit: Hit) -> Self {
         Self { hits, found: 0, limit }
-    }
-
-    /// Puts the hits in order, [`Hit::NONE`] behind them, and says how many there are.
-    pub(super) fn finish(self) -> usize {
-        let (found, rest) = self.hits.split_at_mut(self.found);
-        found.sort_unstable_by(|a, b| a.cost.total_cmp(&b.cost).then(a.frame.cmp(&b.frame)));
-        rest.fill(Hit::NONE);
-        found.len()
     }
 
     fn rise(&mut self, mut place: usize) {
@@ -94,5 +107,12 @@ impl Best for Ranked<'_> {
             *worst = hit;
             self.sink();
         }
+    }
+
+    fn finish(self) -> usize {
+        let (found, rest) = self.hits.split_at_mut(self.found);
+        found.sort_unstable_by(|a, b| a.cost.total_cmp(&b.cost).then(a.frame.cmp(&b.frame)));
+        rest.fill(Hit::NONE);
+        found.len()
     }
 }

@@ -1,7 +1,11 @@
 //! Frames put in the order of a kd-tree, then leaves and boxes from the bottom up.
 
 use super::super::aligned::Aligned;
-use super::tree::{Levels, Tree, block, edges};
+use super::axes::{Axes, axis_blocks, larger, size};
+use super::codes::Codes;
+use super::traverse::Kernel;
+use super::tree::{Levels, Tree, View, W, block, edges};
+use super::{Kernels, Work};
 
 /// A frame and, above it, one of its features in a form that compares as the feature does.
 type Key = u64;
@@ -21,14 +25,14 @@ pub(super) struct Rows<'a> {
 }
 
 /// What becomes the leaves of a [`Tree`].
-struct Leaves<const W: usize> {
+struct Leaves {
     rows: Aligned<f32>,
     frames: Vec<[u32; W]>,
     tags: Vec<[u32; W]>,
 }
 
 /// What becomes the nodes of a [`Tree`].
-pub(super) struct Nodes<const W: usize> {
+pub(super) struct Nodes {
     pub(super) boxes: Aligned<u32>,
     pub(super) lowest: Vec<[u32; W]>,
     pub(super) tags: Vec<[u32; W]>,
@@ -36,23 +40,26 @@ pub(super) struct Nodes<const W: usize> {
 
 impl Rows<'_> {
     /// The tree of all candidates.
-    pub(super) fn tree<const W: usize>(&self) -> Tree<W> {
-        let candidates = (0..self.candidates.len() as u32).filter(|&f| self.candidates[f as usize]);
-        let mut keys: Vec<Key> = candidates.map(Key::from).collect();
-        let order = self.widest_first(&keys);
-        self.arrange_all::<W>(&mut keys);
+    pub(super) fn tree(&self, kernels: Kernels) -> Tree {
+        let (order, axes) = (self.widest_first(), self.axes());
+        let mut keys = self.keys();
+        let turned = kernels.run(Turn { rows: self, axes: &axes });
+        turned.arrange_all(&mut keys);
         let mut frames: Vec<u32> = keys.into_iter().map(frame_of).collect();
         frames.chunks_mut(W).for_each(<[u32]>::sort_unstable);
 
         let leaves = self.leaves(&order, &frames);
-        let levels = Levels::above(leaves.frames.len(), W);
+        let levels = Levels::above(leaves.frames.len());
         let nodes = nodes_above(leaves.rows.as_slice(), &leaves.frames, &leaves.tags, &levels, self.dims);
+        let codes = Codes::of(&axes, &leaves.frames, &levels, turned.size, |frame| turned.row(frame));
         let mut places = vec![0; self.dims];
         order.iter().enumerate().for_each(|(place, &dimension)| places[dimension as usize] = place as u32);
         Tree {
             order,
             places,
+            axes,
             levels,
+            codes,
             rows: leaves.rows.into(),
             frames: leaves.frames.into(),
             tags: leaves.tags.into(),
@@ -65,7 +72,7 @@ impl Rows<'_> {
     }
 
     /// Leaves of `frames`, `W` to each.
-    fn leaves<const W: usize>(&self, order: &[u32], frames: &[u32]) -> Leaves<W> {
+    fn leaves(&self, order: &[u32], frames: &[u32]) -> Leaves {
         let leaf_count = frames.len().div_ceil(W);
         let mut leaves = Leaves {
             rows: Aligned::new(f32::INFINITY, leaf_count * self.dims * W),
@@ -85,25 +92,101 @@ impl Rows<'_> {
         leaves
     }
 
+    fn keys(&self) -> Vec<Key> {
+        let frames = (0..self.candidates.len() as u32).filter(|&f| self.candidates[f as usize]);
+        frames.map(Key::from).collect()
+    }
+
+    /// The dimensions, that in which the frames spread most first.
+    pub(super) fn widest_first(&self) -> Vec<u32> {
+        let spreads = spreads(&self.keys(), LARGE_SAMPLE, self.dims, |frame| self.row(frame));
+        let mut order: Vec<u32> = (0..self.dims as u32).collect();
+        order.sort_by(|&a, &b| spreads[b as usize].total_cmp(&spreads[a as usize]));
+        order
+    }
+
+    /// The principal axes of an even sample of the candidates.
+    pub(super) fn axes(&self) -> Axes {
+        let keys = self.keys();
+        let sample = keys.iter().step_by(keys.len().div_ceil(LARGE_SAMPLE).max(1));
+        Axes::of(sample.map(|&key| self.row(frame_of(key))), self.dims)
+    }
+
+    /// The codes of a tree of these rows.
+    pub(super) fn codes(&self, tree: &View) -> Codes {
+        let turned = Turn { rows: self, axes: tree.axes }.turned();
+        Codes::of(tree.axes, tree.frames, tree.levels, turned.size, |frame| turned.row(frame))
+    }
+
+    fn row(&self, frame: u32) -> &[f32] {
+        &self.features[frame as usize * self.dims..][..self.dims]
+    }
+}
+
+/// The coordinates of all candidates along the principal axes; those of rows too wide to be turned as they are.
+struct Turned {
+    dims: usize,
+    /// Frames x dims; zeros for what is no candidate.
+    rows: Aligned<f32>,
+    /// The largest coordinate.
+    size: f32,
+}
+
+/// Turns the candidates.
+struct Turn<'a> {
+    rows: &'a Rows<'a>,
+    axes: &'a Axes,
+}
+
+impl Work for Turn<'_> {
+    type Done = Turned;
+
+    #[inline(always)]
+    fn run<K: Kernel<W>>(self, _kernel: K) -> Turned {
+        self.turned()
+    }
+}
+
+impl Turn<'_> {
+    #[inline(always)]
+    fn turned(self) -> Turned {
+        let Rows { dims, candidates, features, .. } = *self.rows;
+        let mut turned = Turned { dims, rows: Aligned::new(0.0, features.len()), size: 0.0 };
+        let mut wide = vec![[0.0; W]; axis_blocks(dims)];
+        let rows = features.chunks_exact(dims).zip(turned.rows.as_mut_slice().chunks_exact_mut(dims));
+        for ((row, turned_row), _) in rows.zip(candidates).filter(|&(_, &candidate)| candidate) {
+            if wide.is_empty() {
+                turned_row.copy_from_slice(row);
+                continue;
+            }
+            self.axes.turn(row, &mut wide);
+            turned_row.copy_from_slice(&wide.as_flattened()[..dims]);
+            turned.size = larger(size(&wide), turned.size);
+        }
+        turned
+    }
+}
+
+impl Turned {
     /// Puts the frames so that every run of `W`, `W^2`, `W^3`, ... lies close together.
-    fn arrange_all<const W: usize>(&self, keys: &mut [Key]) {
+    fn arrange_all(&self, keys: &mut [Key]) {
         let mut run = W;
         while run < keys.len() {
             run = run.saturating_mul(W);
         }
-        self.arrange::<W>(keys, run);
+        self.arrange(keys, run);
     }
 
     /// Cuts `keys` into runs of `run`, halving them across their widest dimension, then each run into smaller ones.
-    fn arrange<const W: usize>(&self, keys: &mut [Key], run: usize) {
+    fn arrange(&self, keys: &mut [Key], run: usize) {
         if keys.len() <= W {
             return;
         }
         if keys.len() <= run {
-            return self.arrange::<W>(keys, run / W);
+            return self.arrange(keys, run / W);
         }
         let middle = keys.len().div_ceil(run) / 2 * run;
-        let spreads = self.spreads(keys, SAMPLE);
+        let spreads = spreads(keys, SAMPLE, self.dims, |frame| self.row(frame));
         let widest = (0..self.dims).max_by(|&a, &b| spreads[a].total_cmp(&spreads[b])).unwrap_or(0);
         for key in keys.iter_mut() {
             let frame = frame_of(*key);
@@ -111,38 +194,30 @@ impl Rows<'_> {
         }
         keys.select_nth_unstable(middle);
         let (left, right) = keys.split_at_mut(middle);
-        self.arrange::<W>(left, run);
-        self.arrange::<W>(right, run);
-    }
-
-    /// The dimensions, that in which the frames spread most first.
-    fn widest_first(&self, keys: &[Key]) -> Vec<u32> {
-        let spreads = self.spreads(keys, LARGE_SAMPLE);
-        let mut order: Vec<u32> = (0..self.dims as u32).collect();
-        order.sort_by(|&a, &b| spreads[b as usize].total_cmp(&spreads[a as usize]));
-        order
-    }
-
-    /// How far an even sample of the frames spreads in each dimension: a multiple of the variance.
-    fn spreads(&self, keys: &[Key], sample: usize) -> Vec<f32> {
-        let Some(&first) = keys.first() else { return vec![0.0; self.dims] };
-        let first = self.row(frame_of(first));
-        let sampled = keys.iter().step_by(keys.len().div_ceil(sample));
-        let count = sampled.len() as f32;
-        let mut sums = vec![[0.0_f32; 2]; self.dims];
-        for &key in sampled {
-            for (([sum, squares], x), x0) in sums.iter_mut().zip(self.row(frame_of(key))).zip(first) {
-                let x = x - x0;
-                *sum += x;
-                *squares += x * x;
-            }
-        }
-        sums.into_iter().map(|[sum, squares]| squares - sum * sum / count).collect()
+        self.arrange(left, run);
+        self.arrange(right, run);
     }
 
     fn row(&self, frame: u32) -> &[f32] {
-        &self.features[frame as usize * self.dims..][..self.dims]
+        &self.rows.as_slice()[frame as usize * self.dims..][..self.dims]
     }
+}
+
+/// How far an even sample of the frames spreads in each dimension: a multiple of the variance.
+fn spreads<'a>(keys: &[Key], sample: usize, dims: usize, row: impl Fn(u32) -> &'a [f32]) -> Vec<f32> {
+    let Some(&first) = keys.first() else { return vec![0.0; dims] };
+    let first = row(frame_of(first));
+    let sampled = keys.iter().step_by(keys.len().div_ceil(sample));
+    let count = sampled.len() as f32;
+    let mut sums = vec![[0.0_f32; 2]; dims];
+    for &key in sampled {
+        for (([sum, squares], x), x0) in sums.iter_mut().zip(row(frame_of(key))).zip(first) {
+            let x = x - x0;
+            *sum += x;
+            *squares += x * x;
+        }
+    }
+    sums.into_iter().map(|[sum, squares]| squares - sum * sum / count).collect()
 }
 
 fn frame_of(key: Key) -> u32 {
@@ -156,13 +231,13 @@ fn ascending(x: f32) -> u32 {
 }
 
 /// The nodes above leaves with these rows, frames and tags, level by level.
-pub(super) fn nodes_above<const W: usize>(
+pub(super) fn nodes_above(
     rows: &[f32],
     frames: &[[u32; W]],
     tags: &[[u32; W]],
     levels: &Levels,
     dims: usize,
-) -> Nodes<W> {
+) -> Nodes {
     let count = levels.node_count();
     let mut nodes = Nodes {
         boxes: Aligned::new(edges::EMPTY, count * dims * W),
@@ -188,7 +263,7 @@ pub(super) fn nodes_above<const W: usize>(
                 lowest[node][lane] = least(&lowest_below[child]);
                 above[node][lane] = all_of(&tags_below[child]);
                 let below = block(boxes_below, child, dims).iter();
-                boxes.zip(below).for_each(|(edges, below)| *edges = around_boxes::<W>(below));
+                boxes.zip(below).for_each(|(edges, below)| *edges = around_boxes(below));
             }
         }
     }
@@ -204,14 +279,14 @@ fn all_of(tags: &[u32]) -> u32 {
 }
 
 /// The edges around the numbers of those frames that there are.
-fn around_rows<const W: usize>(lanes: &[f32; W], frames: &[u32; W]) -> u32 {
+fn around_rows(lanes: &[f32; W], frames: &[u32; W]) -> u32 {
     let held = frames.iter().filter(|&&frame| frame != u32::MAX).count();
     let lanes = lanes[..held].iter().copied();
     edges::around(lanes.clone().fold(f32::INFINITY, f32::min), lanes.fold(f32::NEG_INFINITY, f32::max))
 }
 
 /// The edges around boxes.
-fn around_boxes<const W: usize>(boxes: &[u32; W]) -> u32 {
+fn around_boxes(boxes: &[u32; W]) -> u32 {
     let low = boxes.iter().map(|&edges| edges::low(edges)).fold(f32::INFINITY, f32::min);
     edges::around(low, boxes.iter().map(|&edges| edges::high(edges)).fold(f32::NEG_INFINITY, f32::max))
 }

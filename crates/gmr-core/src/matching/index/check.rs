@@ -1,8 +1,8 @@
 //! Whether an index is that of some rows, in full: every number of it is looked at.
 
-use super::build::nodes_above;
+use super::build::{Rows, nodes_above};
 use super::tree::{Tree, View};
-use super::{Index, IndexError, Layout};
+use super::{Index, IndexError};
 use crate::error::ShapeError;
 
 /// What an index is held against.
@@ -26,21 +26,7 @@ impl Index {
         ShapeError::check("candidates", self.frame_count, candidates.len())?;
         ShapeError::check("tags", self.frame_count, tags.len())?;
         let truth = Truth { features, candidates, tags };
-        let found = match &self.layout {
-            Layout::Scalar(tree) => truth.check(tree),
-            #[cfg(target_arch = "x86_64")]
-            Layout::Sse2(tree) => truth.check(tree),
-            #[cfg(target_arch = "x86_64")]
-            Layout::Avx2(_, tree) => truth.check(tree),
-            #[cfg(target_arch = "x86_64")]
-            Layout::Avx512(_, tree) => truth.check(tree),
-            #[cfg(target_arch = "aarch64")]
-            Layout::Neon(tree) => truth.check(tree),
-            #[cfg(all(feature = "file", target_arch = "x86_64"))]
-            Layout::Sse2Twice(tree) => truth.check(tree),
-            #[cfg(all(feature = "file", target_arch = "aarch64"))]
-            Layout::NeonTwice(tree) => truth.check(tree),
-        };
+        let found = truth.check(&self.tree);
         // Damage says more than what it leads to.
         self.check_soundness()?;
         found.map_err(|what| IndexError::Contrary { what })
@@ -48,7 +34,7 @@ impl Index {
 }
 
 impl Truth<'_> {
-    fn check<const W: usize>(&self, tree: &Tree<W>) -> Result<(), String> {
+    fn check(&self, tree: &Tree) -> Result<(), String> {
         let tree = &tree.view();
         let mut met = vec![false; self.candidates.len()];
         for leaf in 0..tree.levels.leaf_count() {
@@ -64,15 +50,26 @@ impl Truth<'_> {
         let is_right = right.boxes.as_slice() == tree.boxes
             && right.lowest == tree.lowest
             && right.tags == tree.node_tags;
-        is_right.then_some(()).ok_or_else(|| "a box is not around what is below it".to_owned())
+        if !is_right {
+            return Err("a box is not around what is below it".to_owned());
+        }
+        let rows = Rows {
+            features: self.features,
+            dims: tree.dims(),
+            candidates: self.candidates,
+            tags: Some(self.tags),
+        };
+        if *tree.axes != rows.axes() || *tree.order != rows.widest_first() {
+            return Err("its axes are not those of the rows".to_owned());
+        }
+        let codes = rows.codes(tree);
+        let are_codes_right = *codes.grids == *tree.grids
+            && *codes.boxes == *tree.node_codes
+            && *codes.rows == *tree.leaf_codes;
+        are_codes_right.then_some(()).ok_or_else(|| "a code is not that of its row or box".to_owned())
     }
 
-    fn check_leaf<const W: usize>(
-        &self,
-        tree: &View<W>,
-        leaf: usize,
-        met: &mut [bool],
-    ) -> Result<(), String> {
+    fn check_leaf(&self, tree: &View, leaf: usize, met: &mut [bool]) -> Result<(), String> {
         if !tree.is_sound_leaf(leaf) {
             return Err(format!("leaf {leaf} is damaged"));
         }

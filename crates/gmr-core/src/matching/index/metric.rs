@@ -1,62 +1,91 @@
 //! What a dimension of a query adds to a cost: its squared difference, or that times a weight.
 //!
-//! Each way of counting has loops of its own, so that a search in which all dimensions count alike knows nothing of
-//! weights. Costs sum the dimensions in their own order; bounds, and the sums that rule out, in that of the layout.
+//! Costs sum the dimensions in their own order and read the rows as they are; what rules out has sums of its own. Where
+//! all dimensions count alike that are the coded boxes and rows; where they have weights, distances along other axes say
+//! nothing, so boxes and rows along the features' own dimensions rule out.
 
 use super::Query;
+use super::axes::{axis_blocks, size};
+use super::codes::{MOST_CODED, Placed};
 use super::traverse::Kernel;
-use super::tree::{Edges, Lanes};
+use super::tree::{Lanes, View, W};
 
 /// Dimensions summed between two looks at whether the frames of a leaf are already too far.
-pub(super) const STRIDE: usize = 8;
+const STRIDE: usize = 8;
 
-/// How the squared differences of a query are counted.
+/// How the squared differences of a query are counted, and the query as that needs it.
 pub(super) trait Metric {
-    /// One dimension of the query, laid out.
-    type Term: Copy + Default;
+    /// Makes a query ready.
+    fn new(tree: &View, query: &Query) -> Self;
 
-    /// Fills `terms` with the query's dimensions in the order of the layout; says how many of them count.
-    fn lay_out(query: &Query, order: &[u32], terms: &mut [Self::Term]) -> usize;
-
-    /// The costs of the frames of a leaf: `places` says where each dimension is laid out.
-    fn costs<const W: usize, K: Kernel<W>>(
-        kernel: K,
-        query: &Query,
-        places: &[u32],
-        rows: &[Lanes<W>],
-    ) -> K::Sums;
+    /// As [`Metric::new`], in the place of another query.
+    fn set(&mut self, tree: &View, query: &Query);
 
     /// Lower bounds of the costs in the boxes of a node, but for rounding.
-    fn bounds<const W: usize, K: Kernel<W>>(kernel: K, terms: &[Self::Term], boxes: &[Edges<W>]) -> K::Sums;
+    fn bounds<K: Kernel<W>>(&mut self, kernel: K, tree: &View, node: usize) -> K::Sums;
 
-    /// Whether some of the dimensions, the widest first, show that all frames of a leaf lie beyond `reach`.
-    fn are_too_far<const W: usize, K: Kernel<W>>(
-        kernel: K,
-        terms: &[Self::Term],
-        rows: &[Lanes<W>],
-        reach: f32,
-    ) -> bool;
+    /// Has what is ready for the frames of the leaves below the node whose bounds were asked for last.
+    fn enter_leaves(&mut self);
+
+    /// Whether frames of a leaf may lie within `reach`; the leaf is below the node that was entered last.
+    fn may_reach<K: Kernel<W>>(&self, kernel: K, tree: &View, leaf: usize, reach: f32) -> bool;
+
+    /// The costs of the frames of a leaf.
+    fn costs<K: Kernel<W>>(kernel: K, query: &Query, places: &[u32], rows: &[Lanes<W>]) -> K::Sums;
+
+    /// Begins to bring a node into the cache.
+    fn fetch_node<K: Kernel<W>>(kernel: K, tree: &View, node: usize);
+
+    /// Begins to bring into the cache what [`Metric::may_reach`] reads first.
+    fn fetch_leaf<K: Kernel<W>>(kernel: K, tree: &View, leaf: usize);
 }
 
-/// All dimensions count alike.
-pub(super) struct Even;
+/// All dimensions count alike, and rows are coded.
+pub(super) struct Even {
+    /// The query along the principal axes.
+    turned: [[f32; W]; MOST_CODED / W],
+    blocks: usize,
+    /// How far off that can be.
+    error: f32,
+    on_node: Placed,
+    on_leaves: Placed,
+}
 
 impl Metric for Even {
-    type Term = f32;
-
     #[inline(always)]
-    fn lay_out(query: &Query, order: &[u32], terms: &mut [f32]) -> usize {
-        terms.iter_mut().zip(order).for_each(|(q, &dimension)| *q = query.features[dimension as usize]);
-        terms.len()
+    fn new(tree: &View, query: &Query) -> Self {
+        let turned = [[0.0; W]; MOST_CODED / W];
+        let blocks = axis_blocks(tree.dims());
+        let mut even = Self { turned, blocks, error: 0.0, on_node: Placed::new(), on_leaves: Placed::new() };
+        even.set(tree, query);
+        even
     }
 
     #[inline(always)]
-    fn costs<const W: usize, K: Kernel<W>>(
-        kernel: K,
-        query: &Query,
-        places: &[u32],
-        rows: &[Lanes<W>],
-    ) -> K::Sums {
+    fn set(&mut self, tree: &View, query: &Query) {
+        let turned = &mut self.turned[..self.blocks];
+        tree.axes.turn(query.features, turned);
+        self.error = tree.axes.error(size(turned));
+    }
+
+    #[inline(always)]
+    fn bounds<K: Kernel<W>>(&mut self, kernel: K, tree: &View, node: usize) -> K::Sums {
+        self.on_node.place(&self.turned[..self.blocks], self.error, tree.grid(node));
+        self.on_node.bounds(kernel, tree.coded_node(node))
+    }
+
+    #[inline(always)]
+    fn enter_leaves(&mut self) {
+        self.on_leaves.loosen(&self.on_node, self.blocks);
+    }
+
+    #[inline(always)]
+    fn may_reach<K: Kernel<W>>(&self, kernel: K, tree: &View, leaf: usize, reach: f32) -> bool {
+        kernel.at_most(self.on_leaves.row_bounds(kernel, tree.coded_leaf(leaf)), reach) != 0
+    }
+
+    #[inline(always)]
+    fn costs<K: Kernel<W>>(kernel: K, query: &Query, places: &[u32], rows: &[Lanes<W>]) -> K::Sums {
         let mut costs = kernel.zero();
         for (&q, &place) in query.features.iter().zip(places) {
             costs = kernel.add_squares(costs, kernel.difference(q, &rows[place as usize]));
@@ -65,98 +94,78 @@ impl Metric for Even {
     }
 
     #[inline(always)]
-    fn bounds<const W: usize, K: Kernel<W>>(kernel: K, terms: &[f32], boxes: &[Edges<W>]) -> K::Sums {
-        // Two sums at a time, for one would wait for itself.
-        let (pairs, last) = boxes.as_chunks::<2>();
-        let (q_pairs, q_last) = terms.as_chunks::<2>();
-        let (mut even, mut odd) = (kernel.zero(), kernel.zero());
-        for (q, edges) in q_pairs.iter().zip(pairs) {
-            even = kernel.add_squares_fused(even, kernel.gap(q[0], &edges[0]));
-            odd = kernel.add_squares_fused(odd, kernel.gap(q[1], &edges[1]));
-        }
-        for (&q, edges) in q_last.iter().zip(last) {
-            even = kernel.add_squares_fused(even, kernel.gap(q, edges));
-        }
-        kernel.add(even, odd)
+    fn fetch_node<K: Kernel<W>>(kernel: K, tree: &View, node: usize) {
+        kernel.fetch(tree.grid(node).numbers);
+        kernel.fetch(tree.coded_node(node));
     }
 
     #[inline(always)]
-    fn are_too_far<const W: usize, K: Kernel<W>>(
-        kernel: K,
-        terms: &[f32],
-        rows: &[Lanes<W>],
-        reach: f32,
-    ) -> bool {
-        let mut sums = kernel.zero();
-        let (rows, _) = rows.as_chunks::<STRIDE>();
-        let (terms, _) = terms.as_chunks::<STRIDE>();
-        for (q, rows) in terms.iter().zip(rows) {
-            for (&q, row) in q.iter().zip(rows) {
-                sums = kernel.add_squares_fused(sums, kernel.difference(q, row));
-            }
-            if kernel.at_most(sums, reach) == 0 {
-                return true;
-            }
-        }
-        false
+    fn fetch_leaf<K: Kernel<W>>(kernel: K, tree: &View, leaf: usize) {
+        kernel.fetch(tree.coded_leaf(leaf));
     }
 }
 
-/// Each dimension counts by a weight; those of weight 0 are not looked at.
+/// Each dimension counts by a weight, by 1 where the query has none; those of weight 0 are not looked at.
 ///
 /// The terms of bounds are rounded just as those of costs are, so they are not above them however large a weight is.
-pub(super) struct Weighted;
+pub(super) struct Weighted {
+    /// The dimensions that count, the widest first.
+    few: [WeightedTerm; FEW],
+    count: usize,
+    /// As `few`, where there may be more than that.
+    many: Vec<WeightedTerm>,
+}
+
+/// Dimensions for which a query asks for no memory.
+const FEW: usize = 64;
+
+impl Weighted {
+    #[inline(always)]
+    fn terms(&self) -> &[WeightedTerm] {
+        if self.many.is_empty() { &self.few[..self.count] } else { &self.many }
+    }
+}
 
 /// A dimension that counts.
 #[derive(Clone, Copy, Default)]
-pub(super) struct WeightedTerm {
+struct WeightedTerm {
     q: f32,
     weight: f32,
     place: u32,
 }
 
 impl Metric for Weighted {
-    type Term = WeightedTerm;
-
     #[inline(always)]
-    fn lay_out(query: &Query, order: &[u32], terms: &mut [WeightedTerm]) -> usize {
-        let weights = query.weights.unwrap_or_default();
-        let mut count = 0;
-        for (place, &dimension) in order.iter().enumerate() {
-            let (q, weight) = (query.features[dimension as usize], weights[dimension as usize]);
-            if weight > 0.0 {
-                terms[count] = WeightedTerm { q, weight, place: place as u32 };
-                count += 1;
-            }
-        }
-        count
+    fn new(tree: &View, query: &Query) -> Self {
+        let mut weighted = Self { few: [WeightedTerm::default(); FEW], count: 0, many: Vec::new() };
+        weighted.set(tree, query);
+        weighted
     }
 
     #[inline(always)]
-    fn costs<const W: usize, K: Kernel<W>>(
-        kernel: K,
-        query: &Query,
-        places: &[u32],
-        rows: &[Lanes<W>],
-    ) -> K::Sums {
-        let mut costs = kernel.zero();
-        let weights = query.weights.unwrap_or_default();
-        for ((&q, &weight), &place) in query.features.iter().zip(weights).zip(places) {
-            if weight > 0.0 {
-                let difference = kernel.difference(q, &rows[place as usize]);
-                costs = kernel.add_weighted_squares(costs, weight, difference);
+    fn set(&mut self, tree: &View, query: &Query) {
+        let term = |(place, &dimension): (usize, &u32)| {
+            let q = query.features[dimension as usize];
+            let weight = query.weights.map_or(1.0, |weights| weights[dimension as usize]);
+            (weight > 0.0).then_some(WeightedTerm { q, weight, place: place as u32 })
+        };
+        let terms = tree.order.iter().enumerate().filter_map(term);
+        (self.count, self.many) = (0, Vec::new());
+        if tree.dims() > FEW {
+            self.many.extend(terms);
+        } else {
+            for term in terms {
+                self.few[self.count] = term;
+                self.count += 1;
             }
         }
-        costs
     }
 
     #[inline(always)]
-    fn bounds<const W: usize, K: Kernel<W>>(
-        kernel: K,
-        terms: &[WeightedTerm],
-        boxes: &[Edges<W>],
-    ) -> K::Sums {
-        let (pairs, last) = terms.as_chunks::<2>();
+    fn bounds<K: Kernel<W>>(&mut self, kernel: K, tree: &View, node: usize) -> K::Sums {
+        // Two sums at a time, for one would wait for itself.
+        let boxes = tree.node(node);
+        let (pairs, last) = self.terms().as_chunks::<2>();
         let (mut even, mut odd) = (kernel.zero(), kernel.zero());
         for [one, other] in pairs {
             even =
@@ -178,22 +187,44 @@ impl Metric for Weighted {
     }
 
     #[inline(always)]
-    fn are_too_far<const W: usize, K: Kernel<W>>(
-        kernel: K,
-        terms: &[WeightedTerm],
-        rows: &[Lanes<W>],
-        reach: f32,
-    ) -> bool {
+    fn enter_leaves(&mut self) {}
+
+    #[inline(always)]
+    fn may_reach<K: Kernel<W>>(&self, kernel: K, tree: &View, leaf: usize, reach: f32) -> bool {
+        let rows = tree.leaf(leaf);
         let mut sums = kernel.zero();
-        for terms in terms.as_chunks::<STRIDE>().0 {
+        for terms in self.terms().as_chunks::<STRIDE>().0 {
             for term in terms {
                 let difference = kernel.difference(term.q, &rows[term.place as usize]);
                 sums = kernel.add_weighted_squares(sums, term.weight, difference);
             }
             if kernel.at_most(sums, reach) == 0 {
-                return true;
+                return false;
             }
         }
-        false
+        true
+    }
+
+    #[inline(always)]
+    fn costs<K: Kernel<W>>(kernel: K, query: &Query, places: &[u32], rows: &[Lanes<W>]) -> K::Sums {
+        let Some(weights) = query.weights else { return Even::costs(kernel, query, places, rows) };
+        let mut costs = kernel.zero();
+        for ((&q, &weight), &place) in query.features.iter().zip(weights).zip(places) {
+            if weight > 0.0 {
+                let difference = kernel.difference(q, &rows[place as usize]);
+                costs = kernel.add_weighted_squares(costs, weight, difference);
+            }
+        }
+        costs
+    }
+
+    #[inline(always)]
+    fn fetch_node<K: Kernel<W>>(kernel: K, tree: &View, node: usize) {
+        kernel.fetch(tree.node(node));
+    }
+
+    #[inline(always)]
+    fn fetch_leaf<K: Kernel<W>>(kernel: K, tree: &View, leaf: usize) {
+        kernel.fetch(&tree.leaf(leaf)[..tree.dims().min(2 * STRIDE)]);
     }
 }

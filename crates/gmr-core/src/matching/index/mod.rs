@@ -5,17 +5,18 @@
 //! [`brute_force::weighted_cost`]). The best frame has the lowest cost; ties go to the lowest frame index.
 //! Every instruction set and every thread count gives the same bits.
 
+use std::marker::PhantomData;
 use std::ops::Range;
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
-#[cfg(target_arch = "x86_64")]
-mod avx512;
+mod axes;
 mod batch;
 mod best;
 pub mod brute_force;
 mod build;
 mod check;
+mod codes;
 mod error;
 mod metric;
 #[cfg(target_arch = "aarch64")]
@@ -29,7 +30,7 @@ mod sse2;
 pub(super) mod stored;
 mod traverse;
 mod tree;
-#[cfg(feature = "file")]
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod twice;
 
 pub use batch::Batch;
@@ -38,10 +39,12 @@ pub use error::IndexError;
 use crate::Isa;
 use best::{Best, Nearest, Ranked};
 use build::Rows;
+use codes::MOST_CODED;
 pub(super) use error::check_weights;
 use error::{check_query, check_rows};
 use metric::{Even, Metric, Weighted};
-use tree::Tree;
+use traverse::{Kernel, search, search_all};
+use tree::{Tree, View, W};
 
 /// A frame and what it costs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,45 +116,89 @@ pub struct Index {
     dims: usize,
     frame_count: usize,
     candidate_count: usize,
-    layout: Layout,
+    kernels: Kernels,
+    tree: Tree,
 }
 
-/// The tree that suits an instruction set.
-#[derive(Debug, Clone)]
-enum Layout {
-    Scalar(Tree<8>),
+/// The kernels of an instruction set.
+#[derive(Debug, Clone, Copy)]
+enum Kernels {
+    Scalar,
     #[cfg(target_arch = "x86_64")]
-    Sse2(Tree<4>),
+    Sse2,
     #[cfg(target_arch = "x86_64")]
-    Avx2(avx2::Avx2, Tree<8>),
-    #[cfg(target_arch = "x86_64")]
-    Avx512(avx512::Avx512, Tree<16>),
+    Avx2(avx2::Avx2),
     #[cfg(target_arch = "aarch64")]
-    Neon(Tree<4>),
-    /// Of a file, where the machine has four lanes.
-    #[cfg(all(feature = "file", target_arch = "x86_64"))]
-    Sse2Twice(Tree<8>),
-    /// Of a file, where the machine has four lanes.
-    #[cfg(all(feature = "file", target_arch = "aarch64"))]
-    NeonTwice(Tree<8>),
+    Neon,
 }
 
-#[cfg(feature = "file")]
-impl Layout {
-    /// A tree of eight lanes, searched by the widest kernels for it that `isa` has.
-    fn of_eights(isa: Isa, tree: Tree<8>) -> Self {
+/// What is done with the kernels of whatever instruction set there is.
+trait Work {
+    /// What comes of it.
+    type Done;
+
+    fn run<K: Kernel<W>>(self, kernel: K) -> Self::Done;
+}
+
+impl Kernels {
+    /// The widest of an instruction set; none where this machine does not have it.
+    fn of(isa: Isa) -> Option<Self> {
         match isa {
+            Isa::Scalar => Some(Self::Scalar),
             #[cfg(target_arch = "x86_64")]
-            Isa::Avx512 | Isa::Avx2 => match avx2::Avx2::detect() {
-                Some(avx2) => Self::Avx2(avx2, tree),
-                None => Self::Sse2Twice(tree),
-            },
+            Isa::Sse2 => Some(Self::Sse2),
+            // Codes are read eight at a time, whatever more a register holds.
             #[cfg(target_arch = "x86_64")]
-            Isa::Sse2 => Self::Sse2Twice(tree),
+            Isa::Avx2 | Isa::Avx512 if isa.is_available() => avx2::Avx2::detect().map(Self::Avx2),
             #[cfg(target_arch = "aarch64")]
-            Isa::Neon => Self::NeonTwice(tree),
-            _ => Self::Scalar(tree),
+            Isa::Neon => Some(Self::Neon),
+            _ => None,
         }
+    }
+
+    fn run<T: Work>(self, work: T) -> T::Done {
+        match self {
+            Self::Scalar => work.run(scalar::Scalar),
+            #[cfg(target_arch = "x86_64")]
+            Self::Sse2 => work.run(twice::Twice(sse2::Sse2)),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(avx2) => avx2.run(work),
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon => work.run(twice::Twice(neon::Neon)),
+        }
+    }
+}
+
+/// One search.
+struct One<'a, M, B> {
+    tree: View<'a>,
+    query: &'a Query<'a>,
+    best: B,
+    metric: PhantomData<M>,
+}
+
+impl<M: Metric, B: Best> Work for One<'_, M, B> {
+    type Done = B;
+
+    #[inline(always)]
+    fn run<K: Kernel<W>>(self, kernel: K) -> B {
+        search::<K, M, B>(kernel, self.tree, self.query.clone(), self.best)
+    }
+}
+
+/// Searches side by side.
+struct Many<'a, M, I> {
+    tree: View<'a>,
+    asked: I,
+    metric: PhantomData<M>,
+}
+
+impl<'a, M: Metric, B: Best, I: Iterator<Item = (Query<'a>, B)>> Work for Many<'a, M, I> {
+    type Done = ();
+
+    #[inline(always)]
+    fn run<K: Kernel<W>>(self, kernel: K) {
+        search_all::<K, M, B>(kernel, self.tree, self.asked);
     }
 }
 
@@ -184,23 +231,10 @@ impl Index {
         tags: Option<&[u32]>,
     ) -> Result<Self, IndexError> {
         check_rows(features, dims, candidates, tags)?;
-        let rows = Rows { features, dims, candidates, tags };
-        let layout = match isa {
-            Isa::Scalar => Some(Layout::Scalar(rows.tree())),
-            #[cfg(target_arch = "x86_64")]
-            Isa::Sse2 => Some(Layout::Sse2(rows.tree())),
-            #[cfg(target_arch = "x86_64")]
-            Isa::Avx2 => avx2::Avx2::detect().map(|avx2| Layout::Avx2(avx2, rows.tree())),
-            #[cfg(target_arch = "x86_64")]
-            Isa::Avx512 => avx512::Avx512::detect().map(|avx512| Layout::Avx512(avx512, rows.tree())),
-            #[cfg(target_arch = "aarch64")]
-            Isa::Neon => Some(Layout::Neon(rows.tree())),
-            #[allow(unreachable_patterns)]
-            _ => None,
-        };
-        let layout = layout.ok_or(IndexError::Isa { asked: isa })?;
+        let kernels = Kernels::of(isa).ok_or(IndexError::Isa { asked: isa })?;
+        let tree = Rows { features, dims, candidates, tags }.tree(kernels);
         let candidate_count = candidates.iter().filter(|&&candidate| candidate).count();
-        Ok(Self { dims, frame_count: candidates.len(), candidate_count, layout })
+        Ok(Self { dims, frame_count: candidates.len(), candidate_count, kernels, tree })
     }
 
     /// Numbers a row.
@@ -243,10 +277,10 @@ impl Index {
     /// when what the search met in a file is damaged.
     pub fn search_from(&self, query: &Query, start: Hit) -> Result<Hit, IndexError> {
         check_query(query, self.dims, start.cost)?;
-        let mut nearest = Nearest(start);
-        self.visit(query, &mut nearest);
+        let mut hit = start;
+        self.visit(query, Nearest::new(&mut hit, start));
         self.check_soundness()?;
-        Ok(nearest.0)
+        Ok(hit)
     }
 
     /// Fills `hits` with the best frames below `query.max_cost`, best first, and says how many there are; the rest
@@ -264,77 +298,51 @@ impl Index {
 
     /// As [`Index::search`], of a query that was checked.
     fn nearest(&self, query: &Query) -> Option<Hit> {
-        let start = query.limit();
-        let mut nearest = Nearest(start);
-        self.visit(query, &mut nearest);
-        (nearest.0 != start).then_some(nearest.0)
+        let mut hit = Hit::NONE;
+        let found = self.visit(query, Nearest::new(&mut hit, query.limit())).finish();
+        (found == 1).then_some(hit)
     }
 
     /// As [`Index::search_top`], of a query that was checked.
     fn rank(&self, query: &Query, hits: &mut [Hit]) -> usize {
-        if let [hit] = hits {
-            let found = self.nearest(query);
-            *hit = found.unwrap_or(Hit::NONE);
-            return usize::from(found.is_some());
+        match hits {
+            [hit] => self.visit(query, Nearest::new(hit, query.limit())).finish(),
+            hits => self.visit(query, Ranked::new(hits, query.limit())).finish(),
         }
-        let mut ranked = Ranked::new(hits, query.limit());
-        self.visit(query, &mut ranked);
-        ranked.finish()
     }
 
     /// An error where a search met a part of a file that is not as it was saved: then no answer can be trusted.
     fn check_soundness(&self) -> Result<(), IndexError> {
         #[cfg(feature = "file")]
-        if let Some(tree) = self.eights()
-            && let Some(seals) = &tree.seals
-        {
-            return seals.check(tree.levels.leaf_count());
+        if let Some(seals) = &self.tree.seals {
+            return seals.check(self.tree.levels.leaf_count());
         }
         Ok(())
     }
 
-    /// The tree where it is one of eight lanes.
-    #[cfg(feature = "file")]
-    fn eights(&self) -> Option<&Tree<8>> {
-        match &self.layout {
-            Layout::Scalar(tree) => Some(tree),
-            #[cfg(target_arch = "x86_64")]
-            Layout::Avx2(_, tree) | Layout::Sse2Twice(tree) => Some(tree),
-            #[cfg(target_arch = "x86_64")]
-            Layout::Sse2(_) | Layout::Avx512(..) => None,
-            #[cfg(target_arch = "aarch64")]
-            Layout::NeonTwice(tree) => Some(tree),
-            #[cfg(target_arch = "aarch64")]
-            Layout::Neon(_) => None,
+    /// Whether queries of these weights are searched by the codes.
+    fn counts_evenly(&self, weights: Option<&[f32]>) -> bool {
+        weights.is_none() && self.dims <= MOST_CODED
+    }
+
+    fn visit<'a, B: Best>(&'a self, query: &'a Query<'a>, best: B) -> B {
+        let tree = self.tree.view();
+        match self.counts_evenly(query.weights) {
+            true => self.kernels.run(One { tree, query, best, metric: PhantomData::<Even> }),
+            false => self.kernels.run(One { tree, query, best, metric: PhantomData::<Weighted> }),
         }
     }
 
-    fn visit(&self, query: &Query, best: &mut impl Best) {
-        match query.weights {
-            None => self.visit_by::<Even>(query, best),
-            Some(_) => self.visit_by::<Weighted>(query, best),
-        }
-    }
-
-    fn visit_by<M: Metric>(&self, query: &Query, best: &mut impl Best) {
-        match &self.layout {
-            Layout::Scalar(tree) => traverse::search::<8, _, M>(scalar::Scalar, tree, query, best),
-            #[cfg(target_arch = "x86_64")]
-            Layout::Sse2(tree) => traverse::search::<4, _, M>(sse2::Sse2, tree, query, best),
-            #[cfg(target_arch = "x86_64")]
-            Layout::Avx2(avx2, tree) => avx2.search::<M>(tree, query, best),
-            #[cfg(target_arch = "x86_64")]
-            Layout::Avx512(avx512, tree) => avx512.search::<M>(tree, query, best),
-            #[cfg(target_arch = "aarch64")]
-            Layout::Neon(tree) => traverse::search::<4, _, M>(neon::Neon, tree, query, best),
-            #[cfg(all(feature = "file", target_arch = "x86_64"))]
-            Layout::Sse2Twice(tree) => {
-                traverse::search::<8, _, M>(twice::Twice(sse2::Sse2), tree, query, best);
-            }
-            #[cfg(all(feature = "file", target_arch = "aarch64"))]
-            Layout::NeonTwice(tree) => {
-                traverse::search::<8, _, M>(twice::Twice(neon::Neon), tree, query, best);
-            }
+    /// As [`Index::visit`], of many queries, which all have weights or none.
+    fn visit_all<'a, B: Best>(
+        &'a self,
+        weights: Option<&[f32]>,
+        asked: impl Iterator<Item = (Query<'a>, B)>,
+    ) {
+        let tree = self.tree.view();
+        match self.counts_evenly(weights) {
+            true => self.kernels.run(Many { tree, asked, metric: PhantomData::<Even> }),
+            false => self.kernels.run(Many { tree, asked, metric: PhantomData::<Weighted> }),
         }
     }
 }

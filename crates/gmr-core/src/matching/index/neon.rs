@@ -13,6 +13,7 @@ const BITS: [u32; 4] = [1, 2, 4, 8];
 
 impl Kernel<4> for Neon {
     type Sums = float32x4_t;
+    type Gaps = int32x4_t;
 
     #[inline(always)]
     fn zero(self) -> float32x4_t {
@@ -45,12 +46,6 @@ impl Kernel<4> for Neon {
     }
 
     #[inline(always)]
-    fn add_squares_fused(self, sums: float32x4_t, difference: float32x4_t) -> float32x4_t {
-        // SAFETY: every AArch64 has NEON.
-        unsafe { vfmaq_f32(sums, difference, difference) }
-    }
-
-    #[inline(always)]
     fn add_weighted_squares(self, sums: float32x4_t, weight: f32, difference: float32x4_t) -> float32x4_t {
         // SAFETY: every AArch64 has NEON.
         unsafe {
@@ -63,6 +58,43 @@ impl Kernel<4> for Neon {
     fn add(self, a: float32x4_t, b: float32x4_t) -> float32x4_t {
         // SAFETY: every AArch64 has NEON.
         unsafe { vaddq_f32(a, b) }
+    }
+
+    #[inline(always)]
+    fn no_gaps(self) -> int32x4_t {
+        // SAFETY: every AArch64 has NEON.
+        unsafe { vdupq_n_s32(0) }
+    }
+
+    #[inline(always)]
+    fn add_gaps(
+        self,
+        gaps: int32x4_t,
+        low: [i16; 2],
+        high: [i16; 2],
+        lower: &[[u8; 2]; 4],
+        upper: &[[u8; 2]; 4],
+    ) -> int32x4_t {
+        // SAFETY: every AArch64 has NEON; the loads read the 8 bytes of `lower` and of `upper`.
+        unsafe {
+            let both = |[one, other]: [i16; 2]| {
+                vreinterpretq_s16_s32(vdupq_n_s32(i32::from(one) & 0xffff | i32::from(other) << 16))
+            };
+            let parts =
+                |codes: &[[u8; 2]; 4]| vreinterpretq_s16_u16(vshll_n_u8::<2>(vld1_u8(codes.as_ptr().cast())));
+            let below = vsubq_s16(parts(lower), both(high));
+            let above = vsubq_s16(both(low), parts(upper));
+            let gap = vmaxq_s16(vmaxq_s16(below, above), vdupq_n_s16(0));
+            let squares = vmull_s16(vget_low_s16(gap), vget_low_s16(gap));
+            let more = vmull_high_s16(gap, gap);
+            vaddq_s32(gaps, vpaddq_s32(squares, more))
+        }
+    }
+
+    #[inline(always)]
+    fn in_units(self, gaps: int32x4_t, unit: f32) -> float32x4_t {
+        // SAFETY: every AArch64 has NEON.
+        unsafe { vmulq_f32(vcvtq_f32_s32(gaps), vdupq_n_f32(unit)) }
     }
 
     #[inline(always)]

@@ -1,5 +1,6 @@
 //! The definition of the kernels, one lane after another.
 
+use super::codes::gap;
 use super::traverse::Kernel;
 use super::tree::{Edges, Lanes, edges};
 
@@ -9,6 +10,7 @@ pub(super) struct Scalar;
 
 impl<const W: usize> Kernel<W> for Scalar {
     type Sums = Lanes<W>;
+    type Gaps = [i32; W];
 
     #[inline(always)]
     fn zero(self) -> Lanes<W> {
@@ -31,11 +33,6 @@ impl<const W: usize> Kernel<W> for Scalar {
     }
 
     #[inline(always)]
-    fn add_squares_fused(self, sums: Lanes<W>, difference: Lanes<W>) -> Lanes<W> {
-        self.add_squares(sums, difference)
-    }
-
-    #[inline(always)]
     fn add_weighted_squares(self, sums: Lanes<W>, weight: f32, difference: Lanes<W>) -> Lanes<W> {
         std::array::from_fn(|lane| sums[lane] + weight * (difference[lane] * difference[lane]))
     }
@@ -43,6 +40,32 @@ impl<const W: usize> Kernel<W> for Scalar {
     #[inline(always)]
     fn add(self, a: Lanes<W>, b: Lanes<W>) -> Lanes<W> {
         std::array::from_fn(|lane| a[lane] + b[lane])
+    }
+
+    #[inline(always)]
+    fn no_gaps(self) -> [i32; W] {
+        [0; W]
+    }
+
+    #[inline(always)]
+    fn add_gaps(
+        self,
+        gaps: [i32; W],
+        low: [i16; 2],
+        high: [i16; 2],
+        lower: &[[u8; 2]; W],
+        upper: &[[u8; 2]; W],
+    ) -> [i32; W] {
+        std::array::from_fn(|lane| {
+            let one = gap(low[0], high[0], lower[lane][0], upper[lane][0]);
+            let other = gap(low[1], high[1], lower[lane][1], upper[lane][1]);
+            gaps[lane] + one * one + other * other
+        })
+    }
+
+    #[inline(always)]
+    fn in_units(self, gaps: [i32; W], unit: f32) -> Lanes<W> {
+        gaps.map(|gap| gap as f32 * unit)
     }
 
     #[inline(always)]

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use super::super::column::Column;
 use super::IndexError;
-use super::tree::{View, edges};
+use super::tree::{View, W, edges};
 
 /// The sums of all blocks, the leaves first, and what is known of the blocks.
 #[derive(Debug)]
@@ -37,13 +37,13 @@ impl Seals {
 
     /// Whether a leaf is as it was saved; where it is not, that is remembered.
     #[inline(always)]
-    pub(super) fn is_leaf_sound<const W: usize>(&self, tree: &View<W>, leaf: usize) -> bool {
+    pub(super) fn is_leaf_sound(&self, tree: &View, leaf: usize) -> bool {
         self.is_known(leaf) || self.look_at(leaf, || self.fits_leaf(tree, leaf))
     }
 
     /// As [`Seals::is_leaf_sound`], of a node.
     #[inline(always)]
-    pub(super) fn is_node_sound<const W: usize>(&self, tree: &View<W>, node: usize) -> bool {
+    pub(super) fn is_node_sound(&self, tree: &View, node: usize) -> bool {
         let block = tree.levels.leaf_count() + node;
         self.is_known(block) || self.look_at(block, || self.fits_node(tree, node, block))
     }
@@ -76,7 +76,7 @@ impl Seals {
         is_sound
     }
 
-    fn fits_leaf<const W: usize>(&self, tree: &View<W>, leaf: usize) -> bool {
+    fn fits_leaf(&self, tree: &View, leaf: usize) -> bool {
         let held = self.held.saturating_sub(leaf * W).min(W);
         let (frames, rest) = tree.frames[leaf].split_at(held);
         let are_finite = tree.leaf(leaf).iter().all(|row| row[..held].iter().all(|x| x.is_finite()));
@@ -87,31 +87,60 @@ impl Seals {
             && are_finite
     }
 
-    fn fits_node<const W: usize>(&self, tree: &View<W>, node: usize, block: usize) -> bool {
+    fn fits_node(&self, tree: &View, node: usize, block: usize) -> bool {
         let is_number = |&edges: &u32| !edges::low(edges).is_nan() && !edges::high(edges).is_nan();
-        sum_of_node(tree, node) == self.sums[block] && tree.node(node).iter().flatten().all(is_number)
+        sum_of_node(tree, node) == self.sums[block]
+            && tree.node(node).iter().flatten().all(is_number)
+            && tree.grid(node).is_sound()
     }
 }
 
-/// The sums of all leaves, then of all nodes.
-pub(super) fn sums<const W: usize>(tree: &View<W>) -> Vec<u64> {
+/// The sums of all leaves, then of all nodes, last of what lays out rows.
+pub(super) fn sums(tree: &View) -> Vec<u64> {
     let leaves = (0..tree.levels.leaf_count()).map(|leaf| sum_of_leaf(tree, leaf));
-    leaves.chain((0..tree.levels.node_count()).map(|node| sum_of_node(tree, node))).collect()
+    let nodes = (0..tree.levels.node_count()).map(|node| sum_of_node(tree, node));
+    leaves.chain(nodes).chain([sum_of_layout(tree)]).collect()
 }
 
-fn sum_of_leaf<const W: usize>(tree: &View<W>, leaf: usize) -> u64 {
+fn sum_of_leaf(tree: &View, leaf: usize) -> u64 {
     let rows = tree.leaf(leaf).iter().map(|row| row.map(f32::to_bits));
-    sum(leaf, rows.chain([tree.frames[leaf], tree.tags[leaf]]))
+    let codes = in_words(tree.coded_leaf(leaf).as_flattened());
+    sum(leaf, rows.chain([tree.frames[leaf], tree.tags[leaf]]).chain(codes))
 }
 
-fn sum_of_node<const W: usize>(tree: &View<W>, node: usize) -> u64 {
-    let boxes = tree.node(node).iter().copied();
-    sum(tree.levels.leaf_count() + node, boxes.chain([tree.lowest[node], tree.node_tags[node]]))
+fn sum_of_node(tree: &View, node: usize) -> u64 {
+    let boxes = tree.node(node).iter().copied().chain([tree.lowest[node], tree.node_tags[node]]);
+    let grid = in_lines(tree.grid(node).numbers.iter().map(|x| x.to_bits()));
+    let codes = in_words(tree.coded_node(node).as_flattened());
+    sum(tree.levels.leaf_count() + node, boxes.chain(grid).chain(codes))
+}
+
+/// The sum of the order of the dimensions and of the axes.
+pub(super) fn sum_of_layout(tree: &View) -> u64 {
+    let block = tree.levels.leaf_count() + tree.levels.node_count();
+    let numbers = tree.axes.mean.iter().chain(&tree.axes.turn);
+    let words = numbers.map(|x| x.to_bits()).flat_map(|bits| [bits as u32, (bits >> 32) as u32]);
+    sum(block, in_lines(tree.order.iter().copied().chain(words)))
+}
+
+/// Words in lines of eight, zeros behind the last.
+fn in_lines(mut words: impl Iterator<Item = u32>) -> impl Iterator<Item = [u32; W]> {
+    std::iter::from_fn(move || {
+        let first = words.next()?;
+        let mut line = [first, 0, 0, 0, 0, 0, 0, 0];
+        line[1..].iter_mut().zip(&mut words).for_each(|(place, word)| *place = word);
+        Some(line)
+    })
+}
+
+/// Bytes, four to a word, the first the lowest.
+fn in_words(bytes: &[u8]) -> impl Iterator<Item = [u32; W]> {
+    in_lines(bytes.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)))
 }
 
 /// A number that differs where the block's number does, or any one word: each step turns different sums into different
 /// ones. Docs/matching.md says it in words.
-fn sum<const W: usize>(block: usize, lines: impl Iterator<Item = [u32; W]>) -> u64 {
+fn sum(block: usize, lines: impl Iterator<Item = [u32; W]>) -> u64 {
     let mut lanes = [0_u32; W];
     for line in lines {
         for (lane, word) in lanes.iter_mut().zip(line) {

@@ -10,6 +10,7 @@ pub(super) struct Sse2;
 
 impl Kernel<4> for Sse2 {
     type Sums = __m128;
+    type Gaps = __m128i;
 
     #[inline(always)]
     fn zero(self) -> __m128 {
@@ -42,11 +43,6 @@ impl Kernel<4> for Sse2 {
     }
 
     #[inline(always)]
-    fn add_squares_fused(self, sums: __m128, difference: __m128) -> __m128 {
-        self.add_squares(sums, difference)
-    }
-
-    #[inline(always)]
     fn add_weighted_squares(self, sums: __m128, weight: f32, difference: __m128) -> __m128 {
         // SAFETY: every x86-64 has SSE2.
         unsafe {
@@ -59,6 +55,42 @@ impl Kernel<4> for Sse2 {
     fn add(self, a: __m128, b: __m128) -> __m128 {
         // SAFETY: every x86-64 has SSE2.
         unsafe { _mm_add_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn no_gaps(self) -> __m128i {
+        // SAFETY: every x86-64 has SSE2.
+        unsafe { _mm_setzero_si128() }
+    }
+
+    #[inline(always)]
+    fn add_gaps(
+        self,
+        gaps: __m128i,
+        low: [i16; 2],
+        high: [i16; 2],
+        lower: &[[u8; 2]; 4],
+        upper: &[[u8; 2]; 4],
+    ) -> __m128i {
+        // SAFETY: every x86-64 has SSE2; the loads read the 8 bytes of `lower` and of `upper`.
+        unsafe {
+            let zero = _mm_setzero_si128();
+            let both =
+                |[one, other]: [i16; 2]| _mm_set1_epi32(i32::from(one) & 0xffff | i32::from(other) << 16);
+            let parts = |codes: &[[u8; 2]; 4]| {
+                _mm_slli_epi16::<2>(_mm_unpacklo_epi8(_mm_loadl_epi64(codes.as_ptr().cast()), zero))
+            };
+            let below = _mm_sub_epi16(parts(lower), both(high));
+            let above = _mm_sub_epi16(both(low), parts(upper));
+            let gap = _mm_max_epi16(_mm_max_epi16(below, above), zero);
+            _mm_add_epi32(gaps, _mm_madd_epi16(gap, gap))
+        }
+    }
+
+    #[inline(always)]
+    fn in_units(self, gaps: __m128i, unit: f32) -> __m128 {
+        // SAFETY: every x86-64 has SSE2.
+        unsafe { _mm_mul_ps(_mm_cvtepi32_ps(gaps), _mm_set1_ps(unit)) }
     }
 
     #[inline(always)]

@@ -1,26 +1,23 @@
-//! An index as files keep it: the arrays of a tree of eight lanes, which every machine can search where they lie.
-//!
-//! AVX2 and AVX-512 machines search it with AVX2, all others with two of their four lanes each: see
-//! [`super::twice`]. A tree of another width, as AVX-512, SSE2 and NEON build it for themselves, is built anew in eight
-//! lanes when it is saved, so that files do not depend on the machine.
+//! An index as files keep it: the arrays of a tree, which every machine lays out alike and searches where they lie.
 
 use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::super::column::Column;
-use super::build::Rows;
-use super::seal::{Seals, sums};
+use super::axes::Axes;
+pub(in super::super) use super::axes::axis_blocks;
+use super::codes::Codes;
+pub(in super::super) use super::codes::{grid_width, pairs};
+use super::seal::{Seals, sum_of_layout, sums};
+pub(in super::super) use super::tree::W;
 use super::tree::{Levels, Tree};
-use super::{Index, IndexError, Layout};
+use super::{Index, Kernels};
 use crate::Isa;
-
-/// Lanes of a stored tree.
-pub(in super::super) const WIDTH: usize = 8;
 
 /// How many leaves and nodes the tree of so many candidates has.
 pub(in super::super) fn counts(candidates: usize) -> (usize, usize) {
-    let levels = Levels::above(candidates.div_ceil(WIDTH), WIDTH);
+    let levels = Levels::above(candidates.div_ceil(W));
     (levels.leaf_count(), levels.node_count())
 }
 
@@ -28,19 +25,29 @@ pub(in super::super) fn counts(candidates: usize) -> (usize, usize) {
 pub(in super::super) struct Arrays<'a> {
     /// D: the dimensions as they are laid out.
     pub(in super::super) order: &'a [u32],
+    /// (D): what is subtracted from rows before they are turned.
+    pub(in super::super) mean: &'a [f64],
+    /// (A, D, 8) with A = D / 8, rounded up: the principal axes, eight side by side; none where rows are not turned.
+    pub(in super::super) axes: &'a [f64],
+    /// (M, G): corner and step of each node's grid.
+    pub(in super::super) grids: &'a [f32],
+    /// (M, P, 2, 8, 2) with P = D / 2, rounded up: lower and upper edges in steps.
+    pub(in super::super) box_codes: &'a [u8],
+    /// (L, P, 8, 2): rows in steps.
+    pub(in super::super) row_codes: &'a [u8],
     /// (L, D, 8).
     pub(in super::super) rows: &'a [f32],
     /// (L, 8).
-    pub(in super::super) frames: &'a [[u32; WIDTH]],
+    pub(in super::super) frames: &'a [[u32; W]],
     /// (L, 8).
-    pub(in super::super) tags: &'a [[u32; WIDTH]],
+    pub(in super::super) tags: &'a [[u32; W]],
     /// (M, D, 8).
     pub(in super::super) boxes: &'a [u32],
     /// (M, 8).
-    pub(in super::super) lowest: &'a [[u32; WIDTH]],
+    pub(in super::super) lowest: &'a [[u32; W]],
     /// (M, 8).
-    pub(in super::super) node_tags: &'a [[u32; WIDTH]],
-    /// (L + M).
+    pub(in super::super) node_tags: &'a [[u32; W]],
+    /// (L + M + 1).
     pub(in super::super) sums: Cow<'a, [u64]>,
 }
 
@@ -50,30 +57,21 @@ pub(in super::super) struct Parts {
     pub(in super::super) frame_count: usize,
     pub(in super::super) candidate_count: usize,
     pub(in super::super) order: Vec<u32>,
+    pub(in super::super) mean: Vec<f64>,
+    pub(in super::super) axes: Vec<f64>,
+    pub(in super::super) grids: Column<f32>,
+    pub(in super::super) box_codes: Column<u8>,
+    pub(in super::super) row_codes: Column<u8>,
     pub(in super::super) rows: Column<f32>,
-    pub(in super::super) frames: Column<[u32; WIDTH]>,
-    pub(in super::super) tags: Column<[u32; WIDTH]>,
+    pub(in super::super) frames: Column<[u32; W]>,
+    pub(in super::super) tags: Column<[u32; W]>,
     pub(in super::super) boxes: Column<u32>,
-    pub(in super::super) lowest: Column<[u32; WIDTH]>,
-    pub(in super::super) node_tags: Column<[u32; WIDTH]>,
+    pub(in super::super) lowest: Column<[u32; W]>,
+    pub(in super::super) node_tags: Column<[u32; W]>,
     pub(in super::super) sums: Column<u64>,
 }
 
 impl Index {
-    /// The tree of eight lanes: this index's own, or one that is built of the same rows.
-    pub(in super::super) fn in_eights(
-        &self,
-        features: &[f32],
-        candidates: &[bool],
-        tags: &[u32],
-    ) -> Result<Cow<'_, Tree<WIDTH>>, IndexError> {
-        if let Some(tree) = self.eights() {
-            return Ok(Cow::Borrowed(tree));
-        }
-        super::error::check_rows(features, self.dims, candidates, Some(tags))?;
-        Ok(Cow::Owned(Rows { features, dims: self.dims, candidates, tags: Some(tags) }.tree()))
-    }
-
     /// An index that is searched where it lies, on the instruction set in use.
     ///
     /// # Errors
@@ -83,8 +81,7 @@ impl Index {
     }
 
     pub(super) fn in_file_for(isa: Isa, parts: Parts) -> Result<Self, String> {
-        let Parts { file, frame_count, candidate_count, order, rows, frames, tags, boxes, lowest, .. } =
-            parts;
+        let Parts { file, frame_count, candidate_count, order, frames, .. } = parts;
         let dims = order.len();
         let mut places = vec![u32::MAX; dims];
         for (place, &dimension) in order.iter().enumerate() {
@@ -95,27 +92,46 @@ impl Index {
                 }
             }
         }
+        let seals = Seals::new(parts.sums, candidate_count, frame_count, file);
         let tree = Tree {
             order,
             places,
-            levels: Levels::above(frames.len(), WIDTH),
-            rows,
+            axes: Axes::new(parts.mean, parts.axes),
+            levels: Levels::above(frames.len()),
+            codes: Codes { grids: parts.grids, boxes: parts.box_codes, rows: parts.row_codes },
+            rows: parts.rows,
             frames,
-            tags,
-            boxes,
-            lowest,
+            tags: parts.tags,
+            boxes: parts.boxes,
+            lowest: parts.lowest,
             node_tags: parts.node_tags,
-            seals: Some(Arc::new(Seals::new(parts.sums, candidate_count, frame_count, file))),
+            seals: Some(Arc::new(seals)),
         };
-        Ok(Self { dims, frame_count, candidate_count, layout: Layout::of_eights(isa, tree) })
+        if tree.seals.as_ref().and_then(|seals| seals.sums.last().copied())
+            != Some(sum_of_layout(&tree.view()))
+        {
+            return Err("the axes of its index are damaged; save the database again".to_owned());
+        }
+        let kernels = Kernels::of(isa).ok_or_else(|| format!("this machine does not have {isa:?}"))?;
+        Ok(Self { dims, frame_count, candidate_count, kernels, tree })
+    }
+
+    /// What is to be saved.
+    pub(in super::super) fn arrays(&self) -> Arrays<'_> {
+        self.tree.arrays()
     }
 }
 
-impl Tree<WIDTH> {
+impl Tree {
     /// What is to be saved. The sums of a tree in a file stay what they are, so that damage is not blessed.
     pub(in super::super) fn arrays(&self) -> Arrays<'_> {
         Arrays {
             order: &self.order,
+            mean: &self.axes.mean,
+            axes: &self.axes.turn,
+            grids: &self.codes.grids,
+            box_codes: &self.codes.boxes,
+            row_codes: &self.codes.rows,
             rows: &self.rows,
             frames: &self.frames,
             tags: &self.tags,

@@ -1,15 +1,19 @@
 //! The search itself, nearest subtree first, for any instruction set.
 //!
 //! A frame's cost sums the dimensions in their own order, and only that decides. What is ruled out before is ruled out
-//! by sums in the order of the layout, of the same terms or of lower ones: rounding keeps order, so the difference to
-//! the nearest point of a box is at most that to any frame in it. However n non-negative terms are rounded and summed,
-//! the sums differ by less than a share of n/2^22; [`Probe::reach`] grants that share before anything is ruled out. So
-//! whatever costs as little as the best is looked at, and the result is exact.
+//! by lower bounds whose sums run otherwise: however n non-negative terms are rounded and summed, the sums differ by less
+//! than a share of n/2^22; [`Descent::reach`] grants that share before anything is ruled out. So whatever costs as
+//! little as the best is looked at, and the result is exact.
+//!
+//! A search of many frames mostly waits for memory. So a descent goes in steps, each of which reads one block and has
+//! the next one on its way; several descents take turns, and each finds its block when it comes to it. One that is alone
+//! has all children on their way that it may come to.
 
+use super::Hit;
+use super::Query;
 use super::best::Best;
-use super::metric::{Metric, STRIDE};
-use super::tree::{Edges, Lanes, Tree, View};
-use super::{Hit, Query};
+use super::metric::Metric;
+use super::tree::{Edges, Lanes, View, W};
 
 /// What an instruction set does with one number of each of `W` frames or boxes at once.
 ///
@@ -18,6 +22,9 @@ use super::{Hit, Query};
 pub(super) trait Kernel<const W: usize>: Copy {
     /// `W` sums in one register.
     type Sums: Copy;
+
+    /// `W` whole sums in one register.
+    type Gaps: Copy;
 
     /// Sums of nothing.
     fn zero(self) -> Self::Sums;
@@ -32,14 +39,28 @@ pub(super) trait Kernel<const W: usize>: Copy {
     /// costs.
     fn add_squares(self, sums: Self::Sums, difference: Self::Sums) -> Self::Sums;
 
-    /// As [`Kernel::add_squares`], for ruling out only: square and sum may be fused.
-    fn add_squares_fused(self, sums: Self::Sums, difference: Self::Sums) -> Self::Sums;
-
     /// Adds the squares of the differences times `weight`; square, product and sum are each rounded to `f32`.
     fn add_weighted_squares(self, sums: Self::Sums, weight: f32, difference: Self::Sums) -> Self::Sums;
 
     /// Sums of sums.
     fn add(self, a: Self::Sums, b: Self::Sums) -> Self::Sums;
+
+    /// Whole sums of nothing.
+    fn no_gaps(self) -> Self::Gaps;
+
+    /// Adds the squares of what a query between `low` and `high` is outside `lower` and `upper`, all in parts of a
+    /// step, in two dimensions side by side: see [`super::codes::gap`].
+    fn add_gaps(
+        self,
+        gaps: Self::Gaps,
+        low: [i16; 2],
+        high: [i16; 2],
+        lower: &[[u8; 2]; W],
+        upper: &[[u8; 2]; W],
+    ) -> Self::Gaps;
+
+    /// Whole sums times `unit`.
+    fn in_units(self, gaps: Self::Gaps, unit: f32) -> Self::Sums;
 
     /// The bits of the sums at or below `limit`.
     fn at_most(self, sums: Self::Sums, limit: f32) -> u32;
@@ -51,21 +72,24 @@ pub(super) trait Kernel<const W: usize>: Copy {
     fn fetch<T>(self, block: &[T]);
 }
 
-/// Levels of the deepest tree: 2^32 frames, four to a node.
-const MOST_LEVELS: usize = 16;
+/// Levels of the deepest tree: 2^32 frames, eight to a leaf and to a node.
+const MOST_LEVELS: usize = 10;
 
-/// Dimensions of a query that is put in the order of the layout without asking for memory.
-const FEW_DIMS: usize = 64;
+/// Descents that take turns: enough for memory to keep up, few enough for their own numbers to stay at hand.
+const IN_FLIGHT: usize = 6;
 
-/// A query and how to lay it against a tree.
-struct Probe<'a, const W: usize, K, M: Metric> {
-    kernel: K,
-    tree: &'a View<'a, W>,
-    query: &'a Query<'a>,
-    /// The query as the tree lays its dimensions out.
-    laid_out: &'a [M::Term],
-    /// 1 and more than the share by which sums of the same terms can differ.
-    slack: f32,
+/// What a descent reads next.
+#[derive(Clone, Copy)]
+enum Next {
+    Node {
+        level: usize,
+        node: usize,
+    },
+    /// What rules a leaf out.
+    Leaf(usize),
+    /// Its rows.
+    Rows(usize),
+    Nothing,
 }
 
 /// The node that is open on one level, and which of its children are still to be looked at.
@@ -80,36 +104,115 @@ struct Open<S> {
     node: usize,
 }
 
-/// Offers `best` every admitted frame that may beat its bound.
-#[inline(always)]
-pub(super) fn search<const W: usize, K: Kernel<W>, M: Metric>(
-    kernel: K,
-    tree: &Tree<W>,
-    query: &Query,
-    best: &mut impl Best,
-) {
-    let tree = &tree.view();
-    let dims = tree.dims();
-    let (mut few, mut many) = ([M::Term::default(); FEW_DIMS], Vec::new());
-    let laid_out = if dims <= FEW_DIMS {
-        &mut few[..dims]
-    } else {
-        many.resize(dims, M::Term::default());
-        &mut many[..]
-    };
-    let count = M::lay_out(query, tree.order, laid_out);
-    // A term is rounded three times at most, and once more wherever it is added.
-    let slack = 1.0 + 2.0 * (dims + 3) as f32 * f32::EPSILON;
-    let probe = Probe::<W, K, M> { kernel, tree, query, laid_out: &laid_out[..count], slack };
-    match (tree.frames.len(), tree.levels.count().checked_sub(1)) {
-        (0, _) => {}
-        (_, None) => probe.look_at_leaf(0, best),
-        (_, Some(top)) => probe.descend(top, best),
+impl<S: Copy> Open<S> {
+    /// Makes the nearest of the other children the nearest.
+    #[inline(always)]
+    fn advance<K: Kernel<W, Sums = S>>(&mut self, kernel: K) {
+        if self.others == 0 {
+            self.bound = f32::NAN;
+        } else {
+            (self.nearest, self.bound) = kernel.lowest(self.bounds, self.others);
+            self.others &= !(1 << self.nearest);
+        }
     }
 }
 
-impl<const W: usize, K: Kernel<W>, M: Metric> Probe<'_, W, K, M> {
-    /// What a sum in the order of the layout is not above where the cost is not above `cost`.
+/// One query on its way through a tree; `ALONE` where no other takes turns with it.
+pub(super) struct Descent<'a, K: Kernel<W>, M, B, const ALONE: bool> {
+    kernel: K,
+    tree: View<'a>,
+    query: Query<'a>,
+    metric: M,
+    best: B,
+    /// 1 and more than the share by which sums of the same terms can differ.
+    slack: f32,
+    path: [Open<K::Sums>; MOST_LEVELS],
+    level: usize,
+    next: Next,
+}
+
+/// Offers every admitted frame that may beat the bound of the query's best to it.
+#[inline(always)]
+pub(super) fn search<'a, K: Kernel<W>, M: Metric, B: Best>(
+    kernel: K,
+    tree: View<'a>,
+    query: Query<'a>,
+    best: B,
+) -> B {
+    let mut descent = Descent::<K, M, B, true>::new(kernel, tree, query, best);
+    while descent.step() {}
+    descent.best
+}
+
+/// As [`search`], for one query after the other; finishes what is best for each.
+#[inline(always)]
+pub(super) fn search_all<'a, K: Kernel<W>, M: Metric, B: Best>(
+    kernel: K,
+    tree: View<'a>,
+    mut asked: impl Iterator<Item = (Query<'a>, B)>,
+) {
+    let begin = |(query, best)| Descent::<K, M, B, false>::new(kernel, tree, query, best);
+    let mut descents: Vec<_> = asked.by_ref().take(IN_FLIGHT).map(begin).collect();
+    while !descents.is_empty() {
+        let mut turn = 0;
+        while turn < descents.len() {
+            if descents[turn].step() {
+                turn += 1;
+                continue;
+            }
+            let best = match asked.next() {
+                Some((query, best)) => descents[turn].begin(query, best),
+                None => descents.swap_remove(turn).best,
+            };
+            best.finish();
+        }
+    }
+}
+
+impl<'a, K: Kernel<W>, M: Metric, B: Best, const ALONE: bool> Descent<'a, K, M, B, ALONE> {
+    #[inline(always)]
+    fn new(kernel: K, tree: View<'a>, query: Query<'a>, best: B) -> Self {
+        // A term is rounded three times at most, and once more wherever it is added.
+        let slack = 1.0 + 2.0 * (tree.dims() + 3) as f32 * f32::EPSILON;
+        let closed = Open { bounds: kernel.zero(), others: 0, nearest: 0, bound: f32::NAN, node: 0 };
+        let (level, next) = start(&tree);
+        let metric = M::new(&tree, &query);
+        Self { kernel, tree, query, metric, best, slack, path: [closed; MOST_LEVELS], level, next }
+    }
+
+    /// Begins anew with another query; what is best for the one before is given back.
+    #[inline(always)]
+    fn begin(&mut self, query: Query<'a>, best: B) -> B {
+        (self.level, self.next) = start(&self.tree);
+        self.metric.set(&self.tree, &query);
+        self.query = query;
+        std::mem::replace(&mut self.best, best)
+    }
+
+    /// Reads one block and has the next on its way; false where there is none.
+    #[inline(always)]
+    fn step(&mut self) -> bool {
+        match self.next {
+            Next::Node { level, node } => self.open(level, node),
+            Next::Leaf(leaf) => {
+                let reach = self.reach(self.best.bound().cost);
+                if self.tree.is_sound_leaf(leaf)
+                    && self.metric.may_reach(self.kernel, &self.tree, leaf, reach)
+                {
+                    self.kernel.fetch(self.tree.leaf(leaf));
+                    self.kernel.fetch(&self.tree.frames[leaf]);
+                    self.next = Next::Rows(leaf);
+                    return true;
+                }
+            }
+            Next::Rows(leaf) => self.look_at_rows(leaf),
+            Next::Nothing => return false,
+        }
+        self.next = self.choose();
+        true
+    }
+
+    /// What a lower bound is not above where the cost is not above `cost`.
     #[inline(always)]
     fn reach(&self, cost: f32) -> f32 {
         // Products too small to keep their digits differ by no share of themselves, but by next to nothing.
@@ -117,112 +220,104 @@ impl<const W: usize, K: Kernel<W>, M: Metric> Probe<'_, W, K, M> {
     }
 
     #[inline(always)]
-    fn descend(&self, top: usize, best: &mut impl Best) {
-        let closed = Open { bounds: self.kernel.zero(), others: 0, nearest: 0, bound: f32::NAN, node: 0 };
-        let mut path = [closed; MOST_LEVELS];
-        path[top] = self.open(top, 0);
-        let mut level = top;
-        loop {
-            match self.next_child(level, &mut path[level], best.bound()) {
-                Some(leaf) if level == 0 => self.look_at_leaf(leaf, best),
-                Some(child) => {
-                    level -= 1;
-                    path[level] = self.open(level, child);
-                }
-                None if level == top => return,
-                None => level += 1,
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn open(&self, level: usize, node: usize) -> Open<K::Sums> {
+    fn open(&mut self, level: usize, node: usize) {
         let place = self.tree.place(level, node);
         let mut children = if self.tree.is_sound_node(place) { self.tree.children(level, node) } else { 0 };
         if self.query.tags != 0 {
             children &= carrying(&self.tree.node_tags[place], self.query.tags);
         }
-        let mut open = Open { bounds: self.bounds(place), others: children, nearest: 0, bound: 0.0, node };
-        self.advance(&mut open);
-        open
-    }
-
-    /// Lower bounds of the costs in the boxes of a node, but for [`Probe::reach`]'s share.
-    #[inline(always)]
-    fn bounds(&self, place: usize) -> K::Sums {
-        M::bounds(self.kernel, self.laid_out, self.tree.node(place))
-    }
-
-    /// Makes the nearest of the other children the nearest.
-    #[inline(always)]
-    fn advance(&self, open: &mut Open<K::Sums>) {
-        if open.others == 0 {
-            open.bound = f32::NAN;
-        } else {
-            (open.nearest, open.bound) = self.kernel.lowest(open.bounds, open.others);
-            open.others &= !(1 << open.nearest);
+        let bounds = self.metric.bounds(self.kernel, &self.tree, place);
+        if level == 0 {
+            self.metric.enter_leaves();
         }
-    }
-
-    /// Takes the nearest child that may hold a frame that beats `best`.
-    #[inline(always)]
-    fn next_child(&self, level: usize, open: &mut Open<K::Sums>, best: Hit) -> Option<usize> {
-        let reach = self.reach(best.cost);
-        while open.bound <= reach {
-            let lane = open.nearest;
-            self.advance(open);
-            // Nothing costs less than nothing: then only a lower frame wins.
-            if best.cost > 0.0 || self.lowest(level, open.node)[lane] < best.frame {
-                if open.bound <= reach {
-                    self.fetch(level, open.node * W + open.nearest);
-                }
-                return Some(open.node * W + lane);
+        if ALONE {
+            let mut near = self.kernel.at_most(bounds, self.reach(self.best.bound().cost)) & children;
+            while near != 0 {
+                self.fetch(level, node * W + near.trailing_zeros() as usize);
+                near &= near - 1;
             }
         }
-        None
+        let open = &mut self.path[level];
+        *open = Open { bounds, others: children, nearest: 0, bound: 0.0, node };
+        open.advance(self.kernel);
+        self.level = level;
     }
 
-    /// Has the child that may be next on its way while its sibling is looked at.
+    /// The nearest child that may hold a frame that beats the best, of the lowest open node that has one.
+    #[inline(always)]
+    fn choose(&mut self) -> Next {
+        let best = self.best.bound();
+        let reach = self.reach(best.cost);
+        let top = self.tree.levels.count().saturating_sub(1);
+        loop {
+            let level = self.level;
+            let open = &mut self.path[level];
+            while open.bound <= reach {
+                let (lane, node) = (open.nearest, open.node);
+                open.advance(self.kernel);
+                // Nothing costs less than nothing: then only a lower frame wins.
+                if best.cost > 0.0 || self.tree.lowest[self.tree.place(level, node)][lane] < best.frame {
+                    let child = node * W + lane;
+                    if !ALONE {
+                        self.fetch(level, child);
+                    }
+                    return match level.checked_sub(1) {
+                        None => Next::Leaf(child),
+                        Some(level) => Next::Node { level, node: child },
+                    };
+                }
+            }
+            if level >= top {
+                return Next::Nothing;
+            }
+            self.level += 1;
+        }
+    }
+
+    /// Begins to bring a child of a node of this level into the cache.
     #[inline(always)]
     fn fetch(&self, level: usize, child: usize) {
         match level.checked_sub(1) {
-            None => self.kernel.fetch(&self.tree.leaf(child)[..self.tree.dims().min(2 * STRIDE)]),
-            Some(below) => self.kernel.fetch(self.tree.node(self.tree.place(below, child))),
+            None => M::fetch_leaf(self.kernel, &self.tree, child),
+            Some(below) => M::fetch_node(self.kernel, &self.tree, self.tree.place(below, child)),
         }
     }
 
     #[inline(always)]
-    fn lowest(&self, level: usize, node: usize) -> &[u32; W] {
-        &self.tree.lowest[self.tree.place(level, node)]
-    }
-
-    #[inline(always)]
-    fn look_at_leaf(&self, leaf: usize, best: &mut impl Best) {
+    fn look_at_rows(&mut self, leaf: usize) {
         if !self.tree.is_sound_leaf(leaf) {
             return;
         }
-        let rows = self.tree.leaf(leaf);
-        if M::are_too_far(self.kernel, self.laid_out, rows, self.reach(best.bound().cost)) {
-            return;
-        }
-        let costs = M::costs(self.kernel, self.query, self.tree.places, rows);
-        let mut near = self.kernel.at_most(costs, best.bound().cost);
+        let costs = M::costs(self.kernel, &self.query, self.tree.places, self.tree.leaf(leaf));
+        let mut near = self.kernel.at_most(costs, self.best.bound().cost);
         while near != 0 {
             let (lane, cost) = self.kernel.lowest(costs, near);
             near &= !(1 << lane);
             let hit = Hit { frame: self.tree.frames[leaf][lane], cost };
             // What fills the last leaf costs infinitely much, unless nothing counts.
             let is_frame = hit.frame != u32::MAX;
-            if is_frame && hit.beats(best.bound()) && self.query.admits(hit.frame, self.tree.tags[leaf][lane])
+            if is_frame
+                && hit.beats(self.best.bound())
+                && self.query.admits(hit.frame, self.tree.tags[leaf][lane])
             {
-                best.offer(hit);
-                near &= self.kernel.at_most(costs, best.bound().cost);
+                self.best.offer(hit);
+                near &= self.kernel.at_most(costs, self.best.bound().cost);
             }
         }
     }
 }
 
+/// The level of the root, and what is read first.
+#[inline(always)]
+fn start(tree: &View) -> (usize, Next) {
+    match (tree.frames.len(), tree.levels.count().checked_sub(1)) {
+        (0, _) => (0, Next::Nothing),
+        (_, None) => (0, Next::Rows(0)),
+        (_, Some(top)) => (top, Next::Node { level: top, node: 0 }),
+    }
+}
+
 /// The bits of the lanes whose tags hold all that is asked.
-fn carrying<const W: usize>(tags: &[u32; W], asked: u32) -> u32 {
+fn carrying<const N: usize>(tags: &[u32; N], asked: u32) -> u32 {
     tags.iter().enumerate().fold(0, |bits, (lane, tags)| bits | u32::from(tags & asked == asked) << lane)
 }

@@ -1,39 +1,49 @@
-//! The layout that is searched: leaves of `W` frames in the order of a kd-tree, and above them boxes, `W` to a node.
+//! The layout that is searched: leaves of eight frames in the order of a kd-tree, and above them boxes, eight to a node.
 //!
-//! Every node but the last of its level is full, so child `j` of node `i` is node `i W + j` of the level below, and
-//! nothing needs to be stored to find it. What `W` lanes share stands side by side: one number of each of `W` frames,
-//! the edges of each of `W` boxes. Dimensions are laid out widest first, for what a few of them rule out need not be
-//! read further.
+//! Every node but the last of its level is full, so child `j` of node `i` is node `8 i + j` of the level below, and
+//! nothing needs to be stored to find it. What eight lanes share stands side by side: one number of each of eight
+//! frames, the edges of each of eight boxes.
+//!
+//! Rows and boxes are kept twice. Coded, along principal axes, they are a quarter as large: they rule out nearly
+//! everything where all dimensions count alike ([`super::codes`]). As they are, along the features' own dimensions, the
+//! widest first, rows give the costs, and boxes rule out where dimensions have weights of their own.
 
 use std::ops::Range;
 #[cfg(feature = "file")]
 use std::sync::Arc;
 
 use super::super::column::Column;
+use super::axes::Axes;
+use super::codes::{BOX_PAIR, Codes, Grid, ROW_PAIR, grid_width, pairs};
 #[cfg(feature = "file")]
 use super::seal::Seals;
 
-/// One number of each of `W` frames.
-pub(super) type Lanes<const W: usize> = [f32; W];
+/// Frames of a leaf and boxes of a node.
+pub(in super::super) const W: usize = 8;
 
-/// Lower (low half) and upper edge (high half) of each of `W` boxes in one dimension, rounded outwards: see [`edges`].
-pub(super) type Edges<const W: usize> = [u32; W];
+/// One number of each of `N` frames.
+pub(super) type Lanes<const N: usize> = [f32; N];
+
+/// Lower (low half) and upper edge (high half) of each of `N` boxes in one dimension, rounded outwards: see [`edges`].
+pub(super) type Edges<const N: usize> = [u32; N];
 
 /// Leaves and the nodes above them.
 #[derive(Debug, Clone)]
-pub(in super::super) struct Tree<const W: usize> {
+pub(in super::super) struct Tree {
     /// The dimensions as they are laid out.
     pub(super) order: Vec<u32>,
     /// Where each dimension is laid out: the inverse of `order`.
     pub(super) places: Vec<u32>,
+    pub(super) axes: Axes,
     pub(super) levels: Levels,
-    /// Leaves x dims x `W`.
+    pub(super) codes: Codes,
+    /// Leaves x dims x 8.
     pub(super) rows: Column<f32>,
     /// Frames of each leaf, ascending; `u32::MAX` behind the last.
     pub(super) frames: Column<[u32; W]>,
     /// Tag bits of each of them.
     pub(super) tags: Column<[u32; W]>,
-    /// Nodes x dims x `W`.
+    /// Nodes x dims x 8.
     pub(super) boxes: Column<u32>,
     /// Lowest frame in each box of each node.
     pub(super) lowest: Column<[u32; W]>,
@@ -54,11 +64,11 @@ pub(super) struct Levels {
 }
 
 impl Levels {
-    /// The levels above so many leaves, `width` children to a node.
-    pub(super) fn above(leaf_count: usize, width: usize) -> Self {
+    /// The levels above so many leaves.
+    pub(super) fn above(leaf_count: usize) -> Self {
         let (mut starts, mut below) = (vec![0], leaf_count);
         while below > 1 {
-            below = below.div_ceil(width);
+            below = below.div_ceil(W);
             starts.push(starts[starts.len() - 1] + below);
         }
         Self { leaf_count, starts }
@@ -91,9 +101,11 @@ impl Levels {
 }
 
 /// A tree as a search sees it: where its numbers lie, whatever keeps them.
-pub(super) struct View<'a, const W: usize> {
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
     pub(super) order: &'a [u32],
     pub(super) places: &'a [u32],
+    pub(super) axes: &'a Axes,
     pub(super) levels: &'a Levels,
     pub(super) frames: &'a [[u32; W]],
     pub(super) tags: &'a [[u32; W]],
@@ -101,15 +113,19 @@ pub(super) struct View<'a, const W: usize> {
     pub(super) node_tags: &'a [[u32; W]],
     pub(super) rows: &'a [f32],
     pub(super) boxes: &'a [u32],
+    pub(super) grids: &'a [f32],
+    pub(super) node_codes: &'a [u8],
+    pub(super) leaf_codes: &'a [u8],
     #[cfg(feature = "file")]
     seals: Option<&'a Seals>,
 }
 
-impl<const W: usize> Tree<W> {
-    pub(super) fn view(&self) -> View<'_, W> {
+impl Tree {
+    pub(super) fn view(&self) -> View<'_> {
         View {
             order: &self.order,
             places: &self.places,
+            axes: &self.axes,
             levels: &self.levels,
             frames: &self.frames,
             tags: &self.tags,
@@ -117,27 +133,49 @@ impl<const W: usize> Tree<W> {
             node_tags: &self.node_tags,
             rows: &self.rows,
             boxes: &self.boxes,
+            grids: &self.codes.grids,
+            node_codes: &self.codes.boxes,
+            leaf_codes: &self.codes.rows,
             #[cfg(feature = "file")]
             seals: self.seals.as_deref(),
         }
     }
 }
 
-impl<const W: usize> View<'_, W> {
+impl<'a> View<'a> {
     pub(super) fn dims(&self) -> usize {
         self.order.len()
     }
 
-    /// The frames of a leaf, `W` side by side in every dimension.
+    /// The frames of a leaf, eight side by side in every dimension.
     #[inline(always)]
-    pub(super) fn leaf(&self, leaf: usize) -> &[Lanes<W>] {
+    pub(super) fn leaf(&self, leaf: usize) -> &'a [Lanes<W>] {
         block(self.rows, leaf, self.dims())
     }
 
-    /// The boxes of a node, `W` side by side in every dimension.
+    /// The boxes of a node, eight side by side in every dimension.
     #[inline(always)]
-    pub(super) fn node(&self, node: usize) -> &[Edges<W>] {
+    pub(super) fn node(&self, node: usize) -> &'a [Edges<W>] {
         block(self.boxes, node, self.dims())
+    }
+
+    /// The grid of a node's codes.
+    #[inline(always)]
+    pub(super) fn grid(&self, node: usize) -> Grid<'a> {
+        let width = grid_width(self.dims());
+        Grid::new(&self.grids[node * width..][..width])
+    }
+
+    /// The boxes of a node, coded.
+    #[inline(always)]
+    pub(super) fn coded_node(&self, node: usize) -> &'a [[u8; BOX_PAIR]] {
+        block(self.node_codes, node, pairs(self.dims()))
+    }
+
+    /// The frames of a leaf, coded on the grid of the node above.
+    #[inline(always)]
+    pub(super) fn coded_leaf(&self, leaf: usize) -> &'a [[u8; ROW_PAIR]] {
+        block(self.leaf_codes, leaf, pairs(self.dims()))
     }
 
     /// The node of that place on its level, among all nodes.
@@ -146,7 +184,7 @@ impl<const W: usize> View<'_, W> {
         self.levels.starts[level] + node
     }
 
-    /// The bits of a node's children: `W` of them, or what is left for the last node of a level.
+    /// The bits of a node's children: eight of them, or what is left for the last node of a level.
     #[inline(always)]
     pub(super) fn children(&self, level: usize, node: usize) -> u32 {
         u32::MAX >> (32 - (self.levels.below(level) - node * W).min(W))
@@ -175,9 +213,10 @@ impl<const W: usize> View<'_, W> {
     }
 }
 
+/// The `place`th of blocks of `lines` lines of `N` values.
 #[inline(always)]
-pub(super) fn block<T, const W: usize>(values: &[T], place: usize, dims: usize) -> &[[T; W]] {
-    values[place * dims * W..][..dims * W].as_chunks().0
+pub(super) fn block<T, const N: usize>(values: &[T], place: usize, lines: usize) -> &[[T; N]] {
+    values[place * lines * N..][..lines * N].as_chunks().0
 }
 
 /// The two edges of a box in one dimension, each the upper half of an `f32`, rounded outwards.

@@ -1,5 +1,6 @@
-//! Eight lanes on a machine that has four: for trees in files, which all have eight.
+//! Eight lanes on a machine that has four: all trees have eight.
 
+use super::codes::Pair;
 use super::traverse::Kernel;
 use super::tree::{Edges, Lanes};
 
@@ -9,6 +10,7 @@ pub(super) struct Twice<K>(pub(super) K);
 
 impl<K: Kernel<4>> Kernel<8> for Twice<K> {
     type Sums = [K::Sums; 2];
+    type Gaps = [K::Gaps; 2];
 
     #[inline(always)]
     fn zero(self) -> Self::Sums {
@@ -33,11 +35,6 @@ impl<K: Kernel<4>> Kernel<8> for Twice<K> {
     }
 
     #[inline(always)]
-    fn add_squares_fused(self, sums: Self::Sums, difference: Self::Sums) -> Self::Sums {
-        [self.0.add_squares_fused(sums[0], difference[0]), self.0.add_squares_fused(sums[1], difference[1])]
-    }
-
-    #[inline(always)]
     fn add_weighted_squares(self, sums: Self::Sums, weight: f32, difference: Self::Sums) -> Self::Sums {
         let add = |half: usize| self.0.add_weighted_squares(sums[half], weight, difference[half]);
         [add(0), add(1)]
@@ -46,6 +43,30 @@ impl<K: Kernel<4>> Kernel<8> for Twice<K> {
     #[inline(always)]
     fn add(self, a: Self::Sums, b: Self::Sums) -> Self::Sums {
         [self.0.add(a[0], b[0]), self.0.add(a[1], b[1])]
+    }
+
+    #[inline(always)]
+    fn no_gaps(self) -> Self::Gaps {
+        [self.0.no_gaps(); 2]
+    }
+
+    #[inline(always)]
+    fn add_gaps(
+        self,
+        gaps: Self::Gaps,
+        low: [i16; 2],
+        high: [i16; 2],
+        lower: &Pair,
+        upper: &Pair,
+    ) -> Self::Gaps {
+        let (lower, upper) = (lower.as_chunks::<4>().0, upper.as_chunks::<4>().0);
+        let add = |half: usize| self.0.add_gaps(gaps[half], low, high, &lower[half], &upper[half]);
+        [add(0), add(1)]
+    }
+
+    #[inline(always)]
+    fn in_units(self, gaps: Self::Gaps, unit: f32) -> Self::Sums {
+        [self.0.in_units(gaps[0], unit), self.0.in_units(gaps[1], unit)]
     }
 
     #[inline(always)]
