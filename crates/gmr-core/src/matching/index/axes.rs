@@ -91,7 +91,8 @@ impl Axes {
     pub(super) fn error(&self, size: f32) -> f32 {
         let terms = 8.0 * (self.dims() + 2) as f64;
         let summed = terms * terms * f64::EPSILON * (f64::from(size) + self.farthest);
-        f32::EPSILON * size + summed as f32
+        // Cut as they are, two coordinates never are further apart.
+        (f32::EPSILON * size + summed as f32).min(2.0 * LARGEST as f32)
     }
 }
 

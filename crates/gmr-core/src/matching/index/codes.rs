@@ -283,7 +283,7 @@ impl Coder {
         numbers[..self.dims].copy_from_slice(low);
         let widest = low.iter().zip(high).map(|(low, high)| high - low).fold(0.0, f32::max);
         let part = (widest / STEPS).max(self.shortest) / PARTS;
-        (numbers[width - 2], numbers[width - 1]) = (1.0 / part, part * part);
+        (numbers[width - 2], numbers[width - 1]) = (1.0 / part, (part * part).min(f32::MAX));
     }
 
     fn code_box(&mut self, node: usize, lane: usize, (low, high): (&[f32], &[f32])) {

@@ -29,14 +29,16 @@ pub(super) enum Kind {
     Walk,
     /// From numbers whose squares vanish to numbers whose squares overflow.
     Extreme,
+    /// As large as numbers get: most costs overflow, and so would coordinates.
+    Huge,
     /// Squares of a few times the least number there is, or of half of it.
     Tiny,
     /// As different as can be from dimension to dimension.
     Skewed,
 }
 
-pub(super) const KINDS: [Kind; 6] =
-    [Kind::Whole, Kind::Constant, Kind::Walk, Kind::Extreme, Kind::Tiny, Kind::Skewed];
+pub(super) const KINDS: [Kind; 7] =
+    [Kind::Whole, Kind::Constant, Kind::Walk, Kind::Extreme, Kind::Huge, Kind::Tiny, Kind::Skewed];
 
 impl Kind {
     fn rows(self, count: usize, dims: usize, random: &mut Random) -> Vec<f32> {
@@ -49,6 +51,8 @@ impl Kind {
                 *at
             }
             Kind::Extreme => random.unit() * 10.0_f32.powi(random.below(60) as i32 - 30),
+            Kind::Huge if random.below(4) == 0 => random.unit(),
+            Kind::Huge => random.unit() * 10.0_f32.powi(random.below(23) as i32 + 16),
             Kind::Tiny => [0.0, 1.0, 1.5, 3.0][random.below(4) as usize] * 2.0_f32.powi(-75),
             Kind::Skewed => random.unit() * 10.0_f32.powi((i % 7) as i32 - 3),
         };
