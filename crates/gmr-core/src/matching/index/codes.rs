@@ -130,38 +130,15 @@ impl Placed {
         }
     }
 
-    /// Lower bounds of the squared distances to eight boxes.
-    #[inline(always)]
-    pub(super) fn bounds<K: Kernel<W>>(&self, kernel: K, boxes: &[[u8; BOX_PAIR]]) -> K::Sums {
-        self.sum(kernel, boxes, |codes| {
-            let (edges, _) = codes.as_chunks::<2>();
-            let (edges, _) = edges.as_chunks::<W>();
-            (&edges[0], &edges[1])
-        })
-    }
-
-    /// Lower bounds of the squared distances to the rows of a leaf on that grid, of a query that was [loosened].
+    /// Lower bounds of the squared distances to eight boxes, or to the rows of a leaf, which are their own edges and for
+    /// which the query was [loosened].
     ///
     /// [loosened]: Placed::loosen
     #[inline(always)]
-    pub(super) fn row_bounds<K: Kernel<W>>(&self, kernel: K, rows: &[[u8; ROW_PAIR]]) -> K::Sums {
-        self.sum(kernel, rows, |codes| {
-            let (codes, _) = codes.as_chunks::<2>();
-            let (codes, _) = codes.as_chunks::<W>();
-            (&codes[0], &codes[0])
-        })
-    }
-
-    #[inline(always)]
-    fn sum<K: Kernel<W>, const N: usize>(
-        &self,
-        kernel: K,
-        codes: &[[u8; N]],
-        edges: impl Fn(&[u8; N]) -> (&Pair, &Pair),
-    ) -> K::Sums {
-        let add = |gaps, codes, low, high| {
-            let (lower, upper) = edges(codes);
-            kernel.add_gaps(gaps, low, high, lower, upper)
+    pub(super) fn bounds<K: Kernel<W>, const N: usize>(&self, kernel: K, codes: &[[u8; N]]) -> K::Sums {
+        let add = |gaps, codes: &[u8; N], low, high| {
+            let edges: &[Pair] = codes.as_chunks::<2>().0.as_chunks::<W>().0;
+            kernel.add_gaps(gaps, low, high, &edges[0], &edges[edges.len() - 1])
         };
         let (lows, highs) =
             (self.lows.as_flattened().as_chunks::<2>().0, self.highs.as_flattened().as_chunks::<2>().0);
@@ -202,7 +179,7 @@ fn nearest(x: f32) -> i16 {
     (x + ROUNDER).to_bits().wrapping_sub(ROUNDER.to_bits()) as i16
 }
 
-/// How far `edge`s of a box are outside the parts between `low` and `high`: the definition of what kernels sum.
+/// How far the edges of a box are outside what is between `low` and `high`: the definition of what kernels sum.
 #[inline(always)]
 pub(super) fn gap(low: i16, high: i16, lower: u8, upper: u8) -> i32 {
     let (lower, upper) = (PARTS as i32 * i32::from(lower), PARTS as i32 * i32::from(upper));

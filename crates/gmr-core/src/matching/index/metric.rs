@@ -81,7 +81,7 @@ impl Metric for Even {
 
     #[inline(always)]
     fn may_reach<K: Kernel<W>>(&self, kernel: K, tree: &View, leaf: usize, reach: f32) -> bool {
-        kernel.at_most(self.on_leaves.row_bounds(kernel, tree.coded_leaf(leaf)), reach) != 0
+        kernel.at_most(self.on_leaves.bounds(kernel, tree.coded_leaf(leaf)), reach) != 0
     }
 
     #[inline(always)]

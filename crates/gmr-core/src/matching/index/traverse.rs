@@ -318,6 +318,6 @@ fn start(tree: &View) -> (usize, Next) {
 }
 
 /// The bits of the lanes whose tags hold all that is asked.
-fn carrying<const N: usize>(tags: &[u32; N], asked: u32) -> u32 {
+fn carrying(tags: &[u32; W], asked: u32) -> u32 {
     tags.iter().enumerate().fold(0, |bits, (lane, tags)| bits | u32::from(tags & asked == asked) << lane)
 }
