@@ -110,37 +110,31 @@ impl Index {
         if tree.seals.as_ref().and_then(|seals| seals.sums.last().copied())
             != Some(sum_of_layout(&tree.view()))
         {
-            return Err("the axes of its index are damaged; save the database again".to_owned());
+            return Err("the axes of its index are damaged".to_owned());
         }
         let kernels = Kernels::of(isa).ok_or_else(|| format!("this machine does not have {isa:?}"))?;
         Ok(Self { dims, frame_count, candidate_count, kernels, tree })
     }
 
-    /// What is to be saved.
-    pub(in super::super) fn arrays(&self) -> Arrays<'_> {
-        self.tree.arrays()
-    }
-}
-
-impl Tree {
     /// What is to be saved. The sums of a tree in a file stay what they are, so that damage is not blessed.
     pub(in super::super) fn arrays(&self) -> Arrays<'_> {
+        let tree = &self.tree;
         Arrays {
-            order: &self.order,
-            mean: &self.axes.mean,
-            axes: &self.axes.turn,
-            grids: &self.codes.grids,
-            box_codes: &self.codes.boxes,
-            row_codes: &self.codes.rows,
-            rows: &self.rows,
-            frames: &self.frames,
-            tags: &self.tags,
-            boxes: &self.boxes,
-            lowest: &self.lowest,
-            node_tags: &self.node_tags,
-            sums: match &self.seals {
+            order: &tree.order,
+            mean: &tree.axes.mean,
+            axes: &tree.axes.turn,
+            grids: &tree.codes.grids,
+            box_codes: &tree.codes.boxes,
+            row_codes: &tree.codes.rows,
+            rows: &tree.rows,
+            frames: &tree.frames,
+            tags: &tree.tags,
+            boxes: &tree.boxes,
+            lowest: &tree.lowest,
+            node_tags: &tree.node_tags,
+            sums: match &tree.seals {
                 Some(seals) => Cow::Borrowed(&seals.sums),
-                None => Cow::Owned(sums(&self.view())),
+                None => Cow::Owned(sums(&tree.view())),
             },
         }
     }

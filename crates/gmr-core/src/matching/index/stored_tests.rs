@@ -210,3 +210,15 @@ fn an_order_that_names_a_dimension_twice_is_refused() {
         assert!(twice.opened(Isa::Scalar).unwrap_err().contains("does not name 4 dimensions once each"));
     }
 }
+
+#[test]
+fn other_axes_than_those_that_were_saved_are_refused() {
+    let saved = Saved::of(&Case::new(Kind::Walk, 50, 4, &mut Random(1)).indices[0]);
+    let (mut turned, mut moved, mut reordered) = (saved.clone(), saved.clone(), saved.clone());
+    turned.axes[3] = -turned.axes[3];
+    moved.mean[2] += 1.0;
+    reordered.order.swap(0, 1);
+    for damaged in [turned, moved, reordered] {
+        assert_eq!(damaged.opened(Isa::Scalar).unwrap_err(), "the axes of its index are damaged");
+    }
+}
