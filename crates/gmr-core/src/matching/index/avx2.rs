@@ -3,7 +3,7 @@
 use std::arch::x86_64::*;
 
 use super::Work;
-use super::codes::Pair;
+use super::codes::{FURTHEST, Pair};
 use super::traverse::Kernel;
 use super::tree::{Edges, Lanes, edges};
 use crate::Isa;
@@ -33,6 +33,16 @@ fn run<T: Work>(kernel: Avx2, work: T) -> T::Done {
 #[inline(always)]
 fn both([one, other]: [i16; 2]) -> i32 {
     i32::from(one) & 0xffff | i32::from(other) << 16
+}
+
+/// Codes in parts of a step.
+///
+/// # Safety
+/// The machine must have AVX2.
+#[inline(always)]
+unsafe fn parts(codes: &Pair) -> __m256i {
+    // SAFETY: the caller's; the load reads the 16 bytes of `codes`.
+    unsafe { _mm256_slli_epi16::<2>(_mm256_cvtepu8_epi16(_mm_loadu_si128(codes.as_ptr().cast()))) }
 }
 
 impl Kernel<8> for Avx2 {
@@ -91,15 +101,38 @@ impl Kernel<8> for Avx2 {
     }
 
     #[inline(always)]
-    fn add_gaps(self, gaps: __m256i, low: [i16; 2], high: [i16; 2], lower: &Pair, upper: &Pair) -> __m256i {
-        // SAFETY: see `Avx2::run`; the loads read the 16 bytes of `lower` and of `upper`.
+    fn place(self, q: &Lanes<8>, corner: &Lanes<8>, parts: f32) -> [i16; 8] {
+        let mut placed = [0; 8];
+        // SAFETY: see `Avx2::run`; the loads read the 8 numbers of `q` and of `corner`, the store fills `placed`.
         unsafe {
-            let parts = |codes: &Pair| {
-                _mm256_slli_epi16::<2>(_mm256_cvtepu8_epi16(_mm_loadu_si128(codes.as_ptr().cast())))
-            };
-            let below = _mm256_sub_epi16(parts(lower), _mm256_set1_epi32(both(high)));
-            let above = _mm256_sub_epi16(_mm256_set1_epi32(both(low)), parts(upper));
-            let gap = _mm256_max_epi16(_mm256_max_epi16(below, above), _mm256_setzero_si256());
+            let from_corner = _mm256_sub_ps(_mm256_loadu_ps(q.as_ptr()), _mm256_loadu_ps(corner.as_ptr()));
+            let parts = _mm256_mul_ps(from_corner, _mm256_set1_ps(parts));
+            let parts = _mm256_max_ps(parts, _mm256_set1_ps(-FURTHEST));
+            let parts = _mm256_cvtps_epi32(_mm256_min_ps(parts, _mm256_set1_ps(FURTHEST)));
+            let (first, last) = (_mm256_castsi256_si128(parts), _mm256_extracti128_si256::<1>(parts));
+            _mm_storeu_si128(placed.as_mut_ptr().cast(), _mm_packs_epi32(first, last));
+        }
+        placed
+    }
+
+    #[inline(always)]
+    fn add_gaps(self, gaps: __m256i, q: [i16; 2], apart: i16, lower: &Pair, upper: &Pair) -> __m256i {
+        // SAFETY: see `Avx2::run`.
+        unsafe {
+            let (q, apart) = (_mm256_set1_epi32(both(q)), _mm256_set1_epi16(apart));
+            let below = _mm256_sub_epi16(parts(lower), q);
+            let above = _mm256_sub_epi16(q, parts(upper));
+            let gap = _mm256_sub_epi16(_mm256_max_epi16(_mm256_max_epi16(below, above), apart), apart);
+            _mm256_add_epi32(gaps, _mm256_madd_epi16(gap, gap))
+        }
+    }
+
+    #[inline(always)]
+    fn add_differences(self, gaps: __m256i, q: [i16; 2], apart: i16, rows: &Pair) -> __m256i {
+        // SAFETY: see `Avx2::run`.
+        unsafe {
+            let difference = _mm256_abs_epi16(_mm256_sub_epi16(parts(rows), _mm256_set1_epi32(both(q))));
+            let gap = _mm256_subs_epu16(difference, _mm256_set1_epi16(apart));
             _mm256_add_epi32(gaps, _mm256_madd_epi16(gap, gap))
         }
     }

@@ -11,6 +11,9 @@ use super::tree::W;
 /// Rounds of rotations after which off-diagonal numbers are far below rounding; each squares what is left.
 const MOST_SWEEPS: usize = 12;
 
+/// Blocks of axes whose sums have room in registers.
+const BLOCKS_AT_ONCE: usize = 4;
+
 /// Coordinates go no further, so that whatever is reckoned with them stays a number.
 const LARGEST: f64 = 1e18;
 
@@ -74,15 +77,31 @@ impl Axes {
     /// machine.
     #[inline(always)]
     pub(super) fn turn(&self, row: &[f32], turned: &mut [[f32; W]]) {
-        let axes = self.turn.chunks_exact(self.dims() * W);
-        for (turned, axes) in turned.iter_mut().zip(axes) {
-            let mut sums = [0.0_f64; W];
-            for ((&x, mean), axes) in row.iter().zip(&self.mean).zip(axes.as_chunks::<W>().0) {
-                let x = f64::from(x) - mean;
-                sums = std::array::from_fn(|lane| sums[lane] + axes[lane] * x);
-            }
-            *turned = sums.map(coordinate);
+        // Several blocks at once, for the sums of one would wait for themselves.
+        let (many, few) = turned.as_chunks_mut::<BLOCKS_AT_ONCE>();
+        for (part, turned) in many.iter_mut().enumerate() {
+            *turned = self.turned(row, part * BLOCKS_AT_ONCE);
         }
+        for (block, turned) in few.iter_mut().enumerate() {
+            [*turned] = self.turned(row, many.len() * BLOCKS_AT_ONCE + block);
+        }
+    }
+
+    /// `N` blocks of coordinates from the `first` on.
+    #[inline(always)]
+    fn turned<const N: usize>(&self, row: &[f32], first: usize) -> [[f32; W]; N] {
+        let dims = self.dims();
+        let axes: [&[[f64; W]]; N] =
+            std::array::from_fn(|block| &self.turn[(first + block) * dims * W..].as_chunks::<W>().0[..dims]);
+        let mut sums = [[0.0_f64; W]; N];
+        for (dimension, (&x, mean)) in row.iter().zip(&self.mean).enumerate() {
+            let x = f64::from(x) - mean;
+            for (sums, axes) in sums.iter_mut().zip(axes) {
+                let axes = &axes[dimension];
+                *sums = std::array::from_fn(|lane| sums[lane] + axes[lane] * x);
+            }
+        }
+        sums.map(|sums| sums.map(coordinate))
     }
 
     /// How far off a coordinate of a row can be at most whose coordinates are of that `size` at most: rounded once to

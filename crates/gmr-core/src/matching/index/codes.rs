@@ -2,8 +2,8 @@
 //!
 //! Coordinates are those of [`super::axes::Axes`]. A node's grid begins at its lowest corner and is equally fine along
 //! every axis, so a difference in codes, times the step, is a difference in coordinates. A box is rounded outwards, a
-//! row to the nearest; a query is known to lie between two quarters of a step, which hold whatever is rounded on the
-//! way. So what is summed is never above the squared distance.
+//! row to the nearest; a query is told in quarters of a step, and how many of them it may be off, whatever is rounded on
+//! the way. So what is summed is never above the squared distance.
 
 use super::super::aligned::Aligned;
 use super::super::column::Column;
@@ -20,9 +20,9 @@ const STEPS: f32 = 254.0;
 /// Parts of a step that a query is told in.
 const PARTS: f32 = 4.0;
 
-/// Parts of a step by which a query is rounded apart: what [`FINEST`] leaves of errors of rows, a sixteenth, and what
-/// is rounded while a number is put on a grid.
-const SLACK: f32 = 0.1;
+/// Parts of a step by which a query may be off: a half by rounding to the nearest, a sixteenth by what [`FINEST`]
+/// leaves of errors of rows, and what is rounded while a number is put on a grid.
+const SLACK: f32 = 0.6;
 
 /// A step is at least that many times as long as a row's coordinate can be wrong.
 const FINEST: f32 = 64.0;
@@ -34,7 +34,7 @@ const SHORTEST: f32 = 1e-15;
 const HALF: i16 = 2;
 
 /// Parts from the corner of a grid beyond which a query is not followed, so that [`PAIRS_A_SUM`] fit an `i32`.
-const FURTHEST: f32 = 7000.0;
+pub(super) const FURTHEST: f32 = 7000.0;
 
 /// Pairs of axes whose squares are summed as whole numbers.
 const PAIRS_A_SUM: usize = 16;
@@ -101,75 +101,77 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// A query on the grid of a node, in parts of a step: between `lows` and `highs` on each axis.
+/// A query on the grid of a node, in parts of a step.
 pub(super) struct Placed {
-    lows: [[i16; W]; MOST_CODED / W],
-    highs: [[i16; W]; MOST_CODED / W],
+    q: [[i16; W]; MOST_CODED / W],
+    /// By how much it may be off on each axis.
+    apart: i16,
     unit: f32,
 }
 
 impl Placed {
     /// Room for a query.
     pub(super) fn new() -> Self {
-        Self { lows: [[0; W]; MOST_CODED / W], highs: [[0; W]; MOST_CODED / W], unit: 0.0 }
+        Self { q: [[0; W]; MOST_CODED / W], apart: 0, unit: 0.0 }
     }
 
     /// Puts a query whose coordinates are wrong by `error` at most on a grid.
     #[inline(always)]
-    pub(super) fn place(&mut self, turned: &[[f32; W]], error: f32, grid: Grid) {
-        let apart = 0.5 + SLACK + error * grid.parts;
+    pub(super) fn place<K: Kernel<W>>(&mut self, kernel: K, turned: &[[f32; W]], error: f32, grid: Grid) {
+        // Further apart than any two numbers on a grid, nothing is ruled out.
+        self.apart = nearest(smaller(SLACK + 0.5 + error * grid.parts, 2.0 * FURTHEST));
         self.unit = grid.unit;
-        let (whole, rest) = grid.numbers.as_chunks::<W>();
-        debug_assert!(rest.is_empty());
-        for (block, (q, corner)) in turned.iter().zip(whole).enumerate() {
-            let parts: [f32; W] = std::array::from_fn(|axis| (q[axis] - corner[axis]) * grid.parts);
-            self.lows[block] =
-                parts.map(|parts| nearest(smaller(larger(parts - apart, -FURTHEST), FURTHEST)));
-            self.highs[block] =
-                parts.map(|parts| nearest(smaller(larger(parts + apart, -FURTHEST), FURTHEST)));
+        let corners = grid.numbers.as_chunks::<W>().0;
+        for ((q, turned), corner) in self.q.iter_mut().zip(turned).zip(corners) {
+            *q = kernel.place(turned, corner, grid.parts);
         }
     }
 
-    /// Lower bounds of the squared distances to eight boxes, or to the rows of a leaf, which are their own edges and for
-    /// which the query was [loosened].
-    ///
-    /// [loosened]: Placed::loosen
+    /// Lower bounds of the squared distances to eight boxes.
     #[inline(always)]
-    pub(super) fn bounds<K: Kernel<W>, const N: usize>(&self, kernel: K, codes: &[[u8; N]]) -> K::Sums {
-        let add = |gaps, codes: &[u8; N], low, high| {
+    pub(super) fn bounds_of_boxes<K: Kernel<W>>(&self, kernel: K, codes: &[[u8; BOX_PAIR]]) -> K::Sums {
+        self.sum(kernel, codes, |gaps, q, codes| {
             let edges: &[Pair] = codes.as_chunks::<2>().0.as_chunks::<W>().0;
-            kernel.add_gaps(gaps, low, high, &edges[0], &edges[edges.len() - 1])
-        };
-        let (lows, highs) =
-            (self.lows.as_flattened().as_chunks::<2>().0, self.highs.as_flattened().as_chunks::<2>().0);
+            kernel.add_gaps(gaps, q, self.apart, &edges[0], &edges[1])
+        })
+    }
+
+    /// Lower bounds of the squared distances to the rows of a leaf, whose codes are rounded themselves.
+    #[inline(always)]
+    pub(super) fn bounds_of_rows<K: Kernel<W>>(&self, kernel: K, codes: &[[u8; ROW_PAIR]]) -> K::Sums {
+        let apart = self.apart + HALF;
+        self.sum(kernel, codes, |gaps, q, codes| {
+            let rows: &[Pair] = codes.as_chunks::<2>().0.as_chunks::<W>().0;
+            kernel.add_differences(gaps, q, apart, &rows[0])
+        })
+    }
+
+    /// What `add` adds up for all pairs of axes.
+    #[inline(always)]
+    fn sum<K: Kernel<W>, const N: usize>(
+        &self,
+        kernel: K,
+        codes: &[[u8; N]],
+        add: impl Fn(K::Gaps, [i16; 2], &[u8; N]) -> K::Gaps,
+    ) -> K::Sums {
+        let q = self.q.as_flattened().as_chunks::<2>().0;
         let mut sums = kernel.zero();
-        for (part, codes) in codes.chunks(PAIRS_A_SUM).enumerate() {
-            let lows = &lows[part * PAIRS_A_SUM..][..codes.len()];
-            let highs = &highs[part * PAIRS_A_SUM..][..codes.len()];
+        for (codes, q) in codes.chunks(PAIRS_A_SUM).zip(q.chunks(PAIRS_A_SUM)) {
+            let q = &q[..codes.len()];
             let mut gaps = kernel.no_gaps();
             // By twos, for the loop itself takes as long as half a pair.
             let mut at = 0;
             while at + 1 < codes.len() {
-                gaps = add(gaps, &codes[at], lows[at], highs[at]);
-                gaps = add(gaps, &codes[at + 1], lows[at + 1], highs[at + 1]);
+                gaps = add(gaps, q[at], &codes[at]);
+                gaps = add(gaps, q[at + 1], &codes[at + 1]);
                 at += 2;
             }
             if at < codes.len() {
-                gaps = add(gaps, &codes[at], lows[at], highs[at]);
+                gaps = add(gaps, q[at], &codes[at]);
             }
             sums = kernel.add(sums, kernel.in_units(gaps, self.unit));
         }
         sums
-    }
-
-    /// Allows for the rounding of rows' codes: the query of `other`, half a step wider on either side.
-    #[inline(always)]
-    pub(super) fn loosen(&mut self, other: &Self, blocks: usize) {
-        self.unit = other.unit;
-        for block in 0..blocks {
-            self.lows[block] = other.lows[block].map(|low| low - HALF);
-            self.highs[block] = other.highs[block].map(|high| high + HALF);
-        }
     }
 }
 
@@ -179,11 +181,17 @@ fn nearest(x: f32) -> i16 {
     (x + ROUNDER).to_bits().wrapping_sub(ROUNDER.to_bits()) as i16
 }
 
-/// How far the edges of a box are outside what is between `low` and `high`: the definition of what kernels sum.
+/// A coordinate of a query on a grid: the definition of what kernels do.
 #[inline(always)]
-pub(super) fn gap(low: i16, high: i16, lower: u8, upper: u8) -> i32 {
+pub(super) fn place(q: f32, corner: f32, parts: f32) -> i16 {
+    nearest(smaller(larger((q - corner) * parts, -FURTHEST), FURTHEST))
+}
+
+/// How far a box is from whatever is nearer than `apart` to `q`: the definition of what kernels sum.
+#[inline(always)]
+pub(super) fn gap(q: i16, apart: i16, lower: u8, upper: u8) -> i32 {
     let (lower, upper) = (PARTS as i32 * i32::from(lower), PARTS as i32 * i32::from(upper));
-    (lower - i32::from(high)).max(i32::from(low) - upper).max(0)
+    ((lower - i32::from(q)).max(i32::from(q) - upper) - i32::from(apart)).max(0)
 }
 
 impl Codes {

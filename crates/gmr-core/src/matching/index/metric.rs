@@ -8,80 +8,70 @@ use super::Query;
 use super::axes::{axis_blocks, size};
 use super::codes::{MOST_CODED, Placed};
 use super::traverse::Kernel;
-use super::tree::{Lanes, View, W};
+use super::tree::{Lanes, View, W, Width};
 
 /// Dimensions summed between two looks at whether the frames of a leaf are already too far.
 const STRIDE: usize = 8;
 
 /// How the squared differences of a query are counted, and the query as that needs it.
-pub(super) trait Metric {
+pub(super) trait Metric<D: Width> {
     /// Makes a query ready.
-    fn new(tree: &View, query: &Query) -> Self;
+    fn new(tree: &View<D>, query: &Query) -> Self;
 
     /// As [`Metric::new`], in the place of another query.
-    fn set(&mut self, tree: &View, query: &Query);
+    fn set(&mut self, tree: &View<D>, query: &Query);
 
     /// Lower bounds of the costs in the boxes of a node, but for rounding.
-    fn bounds<K: Kernel<W>>(&mut self, kernel: K, tree: &View, node: usize) -> K::Sums;
+    fn bounds<K: Kernel<W>>(&mut self, kernel: K, tree: &View<D>, node: usize) -> K::Sums;
 
-    /// Has what is ready for the frames of the leaves below the node whose bounds were asked for last.
-    fn enter_leaves(&mut self);
-
-    /// Whether frames of a leaf may lie within `reach`; the leaf is below the node that was entered last.
-    fn may_reach<K: Kernel<W>>(&self, kernel: K, tree: &View, leaf: usize, reach: f32) -> bool;
+    /// Whether frames of a leaf may lie within `reach`; the leaf is below the node whose bounds were asked for last.
+    fn may_reach<K: Kernel<W>>(&self, kernel: K, tree: &View<D>, leaf: usize, reach: f32) -> bool;
 
     /// The costs of the frames of a leaf.
     fn costs<K: Kernel<W>>(kernel: K, query: &Query, places: &[u32], rows: &[Lanes<W>]) -> K::Sums;
 
     /// Begins to bring a node into the cache.
-    fn fetch_node<K: Kernel<W>>(kernel: K, tree: &View, node: usize);
+    fn fetch_node<K: Kernel<W>>(kernel: K, tree: &View<D>, node: usize);
 
     /// Begins to bring into the cache what [`Metric::may_reach`] reads first.
-    fn fetch_leaf<K: Kernel<W>>(kernel: K, tree: &View, leaf: usize);
+    fn fetch_leaf<K: Kernel<W>>(kernel: K, tree: &View<D>, leaf: usize);
 }
 
 /// All dimensions count alike, and rows are coded.
 pub(super) struct Even {
     /// The query along the principal axes.
     turned: [[f32; W]; MOST_CODED / W],
-    blocks: usize,
     /// How far off that can be.
     error: f32,
-    on_node: Placed,
-    on_leaves: Placed,
+    placed: Placed,
 }
 
-impl Metric for Even {
+impl<D: Width> Metric<D> for Even {
     #[inline(always)]
-    fn new(tree: &View, query: &Query) -> Self {
+    fn new(tree: &View<D>, query: &Query) -> Self {
         let turned = [[0.0; W]; MOST_CODED / W];
-        let blocks = axis_blocks(tree.dims());
-        let mut even = Self { turned, blocks, error: 0.0, on_node: Placed::new(), on_leaves: Placed::new() };
+        let mut even = Self { turned, error: 0.0, placed: Placed::new() };
         even.set(tree, query);
         even
     }
 
     #[inline(always)]
-    fn set(&mut self, tree: &View, query: &Query) {
-        let turned = &mut self.turned[..self.blocks];
+    fn set(&mut self, tree: &View<D>, query: &Query) {
+        let turned = &mut self.turned[..axis_blocks(tree.dims())];
         tree.axes.turn(query.features, turned);
         self.error = tree.axes.error(size(turned));
     }
 
     #[inline(always)]
-    fn bounds<K: Kernel<W>>(&mut self, kernel: K, tree: &View, node: usize) -> K::Sums {
-        self.on_node.place(&self.turned[..self.blocks], self.error, tree.grid(node));
-        self.on_node.bounds(kernel, tree.coded_node(node))
+    fn bounds<K: Kernel<W>>(&mut self, kernel: K, tree: &View<D>, node: usize) -> K::Sums {
+        let turned = &self.turned[..axis_blocks(tree.dims())];
+        self.placed.place(kernel, turned, self.error, tree.grid(node));
+        self.placed.bounds_of_boxes(kernel, tree.coded_node(node))
     }
 
     #[inline(always)]
-    fn enter_leaves(&mut self) {
-        self.on_leaves.loosen(&self.on_node, self.blocks);
-    }
-
-    #[inline(always)]
-    fn may_reach<K: Kernel<W>>(&self, kernel: K, tree: &View, leaf: usize, reach: f32) -> bool {
-        kernel.at_most(self.on_leaves.bounds(kernel, tree.coded_leaf(leaf)), reach) != 0
+    fn may_reach<K: Kernel<W>>(&self, kernel: K, tree: &View<D>, leaf: usize, reach: f32) -> bool {
+        kernel.at_most(self.placed.bounds_of_rows(kernel, tree.coded_leaf(leaf)), reach) != 0
     }
 
     #[inline(always)]
@@ -94,13 +84,13 @@ impl Metric for Even {
     }
 
     #[inline(always)]
-    fn fetch_node<K: Kernel<W>>(kernel: K, tree: &View, node: usize) {
+    fn fetch_node<K: Kernel<W>>(kernel: K, tree: &View<D>, node: usize) {
         kernel.fetch(tree.grid(node).numbers);
         kernel.fetch(tree.coded_node(node));
     }
 
     #[inline(always)]
-    fn fetch_leaf<K: Kernel<W>>(kernel: K, tree: &View, leaf: usize) {
+    fn fetch_leaf<K: Kernel<W>>(kernel: K, tree: &View<D>, leaf: usize) {
         kernel.fetch(tree.coded_leaf(leaf));
     }
 }
@@ -134,16 +124,16 @@ struct WeightedTerm {
     place: u32,
 }
 
-impl Metric for Weighted {
+impl<D: Width> Metric<D> for Weighted {
     #[inline(always)]
-    fn new(tree: &View, query: &Query) -> Self {
+    fn new(tree: &View<D>, query: &Query) -> Self {
         let mut weighted = Self { few: [WeightedTerm::default(); FEW], count: 0, many: Vec::new() };
         weighted.set(tree, query);
         weighted
     }
 
     #[inline(always)]
-    fn set(&mut self, tree: &View, query: &Query) {
+    fn set(&mut self, tree: &View<D>, query: &Query) {
         let term = |(place, &dimension): (usize, &u32)| {
             let q = query.features[dimension as usize];
             let weight = query.weights.map_or(1.0, |weights| weights[dimension as usize]);
@@ -162,7 +152,7 @@ impl Metric for Weighted {
     }
 
     #[inline(always)]
-    fn bounds<K: Kernel<W>>(&mut self, kernel: K, tree: &View, node: usize) -> K::Sums {
+    fn bounds<K: Kernel<W>>(&mut self, kernel: K, tree: &View<D>, node: usize) -> K::Sums {
         // Two sums at a time, for one would wait for itself.
         let boxes = tree.node(node);
         let (pairs, last) = self.terms().as_chunks::<2>();
@@ -187,10 +177,7 @@ impl Metric for Weighted {
     }
 
     #[inline(always)]
-    fn enter_leaves(&mut self) {}
-
-    #[inline(always)]
-    fn may_reach<K: Kernel<W>>(&self, kernel: K, tree: &View, leaf: usize, reach: f32) -> bool {
+    fn may_reach<K: Kernel<W>>(&self, kernel: K, tree: &View<D>, leaf: usize, reach: f32) -> bool {
         let rows = tree.leaf(leaf);
         let mut sums = kernel.zero();
         for terms in self.terms().as_chunks::<STRIDE>().0 {
@@ -207,7 +194,9 @@ impl Metric for Weighted {
 
     #[inline(always)]
     fn costs<K: Kernel<W>>(kernel: K, query: &Query, places: &[u32], rows: &[Lanes<W>]) -> K::Sums {
-        let Some(weights) = query.weights else { return Even::costs(kernel, query, places, rows) };
+        let Some(weights) = query.weights else {
+            return <Even as Metric<D>>::costs(kernel, query, places, rows);
+        };
         let mut costs = kernel.zero();
         for ((&q, &weight), &place) in query.features.iter().zip(weights).zip(places) {
             if weight > 0.0 {
@@ -219,12 +208,12 @@ impl Metric for Weighted {
     }
 
     #[inline(always)]
-    fn fetch_node<K: Kernel<W>>(kernel: K, tree: &View, node: usize) {
+    fn fetch_node<K: Kernel<W>>(kernel: K, tree: &View<D>, node: usize) {
         kernel.fetch(tree.node(node));
     }
 
     #[inline(always)]
-    fn fetch_leaf<K: Kernel<W>>(kernel: K, tree: &View, leaf: usize) {
+    fn fetch_leaf<K: Kernel<W>>(kernel: K, tree: &View<D>, leaf: usize) {
         kernel.fetch(&tree.leaf(leaf)[..tree.dims().min(2 * STRIDE)]);
     }
 }

@@ -44,7 +44,10 @@ pub(super) use error::check_weights;
 use error::{check_query, check_rows};
 use metric::{Even, Metric, Weighted};
 use traverse::{Kernel, search, search_all};
-use tree::{Tree, View, W};
+use tree::{Fixed, Tree, View, W, Width};
+
+/// The width of [`super::features::Schema::locomotion`], for which searches are compiled once more.
+const USUAL_DIMS: usize = 27;
 
 /// A frame and what it costs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -170,35 +173,35 @@ impl Kernels {
 }
 
 /// One search.
-struct One<'a, M, B> {
-    tree: View<'a>,
+struct One<'a, D, M, B> {
+    tree: View<'a, D>,
     query: &'a Query<'a>,
     best: B,
     metric: PhantomData<M>,
 }
 
-impl<M: Metric, B: Best> Work for One<'_, M, B> {
+impl<D: Width, M: Metric<D>, B: Best> Work for One<'_, D, M, B> {
     type Done = B;
 
     #[inline(always)]
     fn run<K: Kernel<W>>(self, kernel: K) -> B {
-        search::<K, M, B>(kernel, self.tree, self.query.clone(), self.best)
+        search::<K, D, M, B>(kernel, self.tree, self.query.clone(), self.best)
     }
 }
 
 /// Searches side by side.
-struct Many<'a, M, I> {
-    tree: View<'a>,
+struct Many<'a, D, M, I> {
+    tree: View<'a, D>,
     asked: I,
     metric: PhantomData<M>,
 }
 
-impl<'a, M: Metric, B: Best, I: Iterator<Item = (Query<'a>, B)>> Work for Many<'a, M, I> {
+impl<'a, D: Width, M: Metric<D>, B: Best, I: Iterator<Item = (Query<'a>, B)>> Work for Many<'a, D, M, I> {
     type Done = ();
 
     #[inline(always)]
     fn run<K: Kernel<W>>(self, kernel: K) {
-        search_all::<K, M, B>(kernel, self.tree, self.asked);
+        search_all::<K, D, M, B>(kernel, self.tree, self.asked);
     }
 }
 
@@ -327,9 +330,13 @@ impl Index {
 
     fn visit<'a, B: Best>(&'a self, query: &'a Query<'a>, best: B) -> B {
         let tree = self.tree.view();
-        match self.counts_evenly(query.weights) {
-            true => self.kernels.run(One { tree, query, best, metric: PhantomData::<Even> }),
-            false => self.kernels.run(One { tree, query, best, metric: PhantomData::<Weighted> }),
+        match (self.counts_evenly(query.weights), self.dims) {
+            (true, USUAL_DIMS) => {
+                let tree = self.tree.view_as(Fixed::<USUAL_DIMS>);
+                self.kernels.run(One { tree, query, best, metric: PhantomData::<Even> })
+            }
+            (true, _) => self.kernels.run(One { tree, query, best, metric: PhantomData::<Even> }),
+            (false, _) => self.kernels.run(One { tree, query, best, metric: PhantomData::<Weighted> }),
         }
     }
 
@@ -340,9 +347,13 @@ impl Index {
         asked: impl Iterator<Item = (Query<'a>, B)>,
     ) {
         let tree = self.tree.view();
-        match self.counts_evenly(weights) {
-            true => self.kernels.run(Many { tree, asked, metric: PhantomData::<Even> }),
-            false => self.kernels.run(Many { tree, asked, metric: PhantomData::<Weighted> }),
+        match (self.counts_evenly(weights), self.dims) {
+            (true, USUAL_DIMS) => {
+                let tree = self.tree.view_as(Fixed::<USUAL_DIMS>);
+                self.kernels.run(Many { tree, asked, metric: PhantomData::<Even> });
+            }
+            (true, _) => self.kernels.run(Many { tree, asked, metric: PhantomData::<Even> }),
+            (false, _) => self.kernels.run(Many { tree, asked, metric: PhantomData::<Weighted> }),
         }
     }
 }

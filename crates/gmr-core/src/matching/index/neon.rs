@@ -2,6 +2,7 @@
 
 use std::arch::aarch64::*;
 
+use super::codes::FURTHEST;
 use super::traverse::Kernel;
 use super::tree::{Edges, Lanes, edges};
 
@@ -67,28 +68,45 @@ impl Kernel<4> for Neon {
     }
 
     #[inline(always)]
+    fn place(self, q: &Lanes<4>, corner: &Lanes<4>, parts: f32) -> [i16; 4] {
+        let mut placed = [0; 4];
+        // SAFETY: every AArch64 has NEON; the loads read the 4 numbers of `q` and of `corner`, the store fills `placed`.
+        unsafe {
+            let from_corner = vsubq_f32(vld1q_f32(q.as_ptr()), vld1q_f32(corner.as_ptr()));
+            let parts = vmaxq_f32(vmulq_f32(from_corner, vdupq_n_f32(parts)), vdupq_n_f32(-FURTHEST));
+            let parts = vcvtnq_s32_f32(vminq_f32(parts, vdupq_n_f32(FURTHEST)));
+            vst1_s16(placed.as_mut_ptr(), vmovn_s32(parts));
+        }
+        placed
+    }
+
+    #[inline(always)]
     fn add_gaps(
         self,
         gaps: int32x4_t,
-        low: [i16; 2],
-        high: [i16; 2],
+        q: [i16; 2],
+        apart: i16,
         lower: &[[u8; 2]; 4],
         upper: &[[u8; 2]; 4],
     ) -> int32x4_t {
         // SAFETY: every AArch64 has NEON; the loads read the 8 bytes of `lower` and of `upper`.
         unsafe {
-            let both = |[one, other]: [i16; 2]| {
-                vreinterpretq_s16_s32(vdupq_n_s32(i32::from(one) & 0xffff | i32::from(other) << 16))
-            };
+            let [one, other] = q;
+            let q = vreinterpretq_s16_s32(vdupq_n_s32(i32::from(one) & 0xffff | i32::from(other) << 16));
             let parts =
                 |codes: &[[u8; 2]; 4]| vreinterpretq_s16_u16(vshll_n_u8::<2>(vld1_u8(codes.as_ptr().cast())));
-            let below = vsubq_s16(parts(lower), both(high));
-            let above = vsubq_s16(both(low), parts(upper));
-            let gap = vmaxq_s16(vmaxq_s16(below, above), vdupq_n_s16(0));
+            let apart = vdupq_n_s16(apart);
+            let outside = vmaxq_s16(vsubq_s16(parts(lower), q), vsubq_s16(q, parts(upper)));
+            let gap = vsubq_s16(vmaxq_s16(outside, apart), apart);
             let squares = vmull_s16(vget_low_s16(gap), vget_low_s16(gap));
             let more = vmull_high_s16(gap, gap);
             vaddq_s32(gaps, vpaddq_s32(squares, more))
         }
+    }
+
+    #[inline(always)]
+    fn add_differences(self, gaps: int32x4_t, q: [i16; 2], apart: i16, rows: &[[u8; 2]; 4]) -> int32x4_t {
+        self.add_gaps(gaps, q, apart, rows, rows)
     }
 
     #[inline(always)]

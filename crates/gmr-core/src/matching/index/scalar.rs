@@ -1,6 +1,6 @@
 //! The definition of the kernels, one lane after another.
 
-use super::codes::gap;
+use super::codes::{gap, place};
 use super::traverse::Kernel;
 use super::tree::{Edges, Lanes, edges};
 
@@ -48,19 +48,29 @@ impl<const W: usize> Kernel<W> for Scalar {
     }
 
     #[inline(always)]
+    fn place(self, q: &Lanes<W>, corner: &Lanes<W>, parts: f32) -> [i16; W] {
+        std::array::from_fn(|axis| place(q[axis], corner[axis], parts))
+    }
+
+    #[inline(always)]
     fn add_gaps(
         self,
         gaps: [i32; W],
-        low: [i16; 2],
-        high: [i16; 2],
+        q: [i16; 2],
+        apart: i16,
         lower: &[[u8; 2]; W],
         upper: &[[u8; 2]; W],
     ) -> [i32; W] {
         std::array::from_fn(|lane| {
-            let one = gap(low[0], high[0], lower[lane][0], upper[lane][0]);
-            let other = gap(low[1], high[1], lower[lane][1], upper[lane][1]);
+            let one = gap(q[0], apart, lower[lane][0], upper[lane][0]);
+            let other = gap(q[1], apart, lower[lane][1], upper[lane][1]);
             gaps[lane] + one * one + other * other
         })
+    }
+
+    #[inline(always)]
+    fn add_differences(self, gaps: [i32; W], q: [i16; 2], apart: i16, rows: &[[u8; 2]; W]) -> [i32; W] {
+        self.add_gaps(gaps, q, apart, rows, rows)
     }
 
     #[inline(always)]

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use super::super::column::Column;
 use super::IndexError;
-use super::tree::{View, W, edges};
+use super::tree::{View, W, Width, edges};
 
 /// The sums of all blocks, the leaves first, and what is known of the blocks.
 #[derive(Debug)]
@@ -37,13 +37,13 @@ impl Seals {
 
     /// Whether a leaf is as it was saved; where it is not, that is remembered.
     #[inline(always)]
-    pub(super) fn is_leaf_sound(&self, tree: &View, leaf: usize) -> bool {
+    pub(super) fn is_leaf_sound(&self, tree: &View<'_, impl Width>, leaf: usize) -> bool {
         self.is_known(leaf) || self.look_at(leaf, || self.fits_leaf(tree, leaf))
     }
 
     /// As [`Seals::is_leaf_sound`], of a node.
     #[inline(always)]
-    pub(super) fn is_node_sound(&self, tree: &View, node: usize) -> bool {
+    pub(super) fn is_node_sound(&self, tree: &View<'_, impl Width>, node: usize) -> bool {
         let block = tree.levels.leaf_count() + node;
         self.is_known(block) || self.look_at(block, || self.fits_node(tree, node, block))
     }
@@ -76,7 +76,7 @@ impl Seals {
         is_sound
     }
 
-    fn fits_leaf(&self, tree: &View, leaf: usize) -> bool {
+    fn fits_leaf(&self, tree: &View<'_, impl Width>, leaf: usize) -> bool {
         let held = self.held.saturating_sub(leaf * W).min(W);
         let (frames, rest) = tree.frames[leaf].split_at(held);
         let are_finite = tree.leaf(leaf).iter().all(|row| row[..held].iter().all(|x| x.is_finite()));
@@ -87,7 +87,7 @@ impl Seals {
             && are_finite
     }
 
-    fn fits_node(&self, tree: &View, node: usize, block: usize) -> bool {
+    fn fits_node(&self, tree: &View<'_, impl Width>, node: usize, block: usize) -> bool {
         let is_number = |&edges: &u32| !edges::low(edges).is_nan() && !edges::high(edges).is_nan();
         sum_of_node(tree, node) == self.sums[block]
             && tree.node(node).iter().flatten().all(is_number)
@@ -96,19 +96,19 @@ impl Seals {
 }
 
 /// The sums of all leaves, then of all nodes, last of what lays out rows.
-pub(super) fn sums(tree: &View) -> Vec<u64> {
+pub(super) fn sums(tree: &View<'_, impl Width>) -> Vec<u64> {
     let leaves = (0..tree.levels.leaf_count()).map(|leaf| sum_of_leaf(tree, leaf));
     let nodes = (0..tree.levels.node_count()).map(|node| sum_of_node(tree, node));
     leaves.chain(nodes).chain([sum_of_layout(tree)]).collect()
 }
 
-fn sum_of_leaf(tree: &View, leaf: usize) -> u64 {
+fn sum_of_leaf(tree: &View<'_, impl Width>, leaf: usize) -> u64 {
     let rows = tree.leaf(leaf).iter().map(|row| row.map(f32::to_bits));
     let codes = in_words(tree.coded_leaf(leaf).as_flattened());
     sum(leaf, rows.chain([tree.frames[leaf], tree.tags[leaf]]).chain(codes))
 }
 
-fn sum_of_node(tree: &View, node: usize) -> u64 {
+fn sum_of_node(tree: &View<'_, impl Width>, node: usize) -> u64 {
     let boxes = tree.node(node).iter().copied().chain([tree.lowest[node], tree.node_tags[node]]);
     let grid = in_lines(tree.grid(node).numbers.iter().map(|x| x.to_bits()));
     let codes = in_words(tree.coded_node(node).as_flattened());
@@ -116,7 +116,7 @@ fn sum_of_node(tree: &View, node: usize) -> u64 {
 }
 
 /// The sum of the order of the dimensions and of the axes.
-pub(super) fn sum_of_layout(tree: &View) -> u64 {
+pub(super) fn sum_of_layout(tree: &View<'_, impl Width>) -> u64 {
     let block = tree.levels.leaf_count() + tree.levels.node_count();
     let numbers = tree.axes.mean.iter().chain(&tree.axes.turn);
     let words = numbers.map(|x| x.to_bits()).flat_map(|bits| [bits as u32, (bits >> 32) as u32]);

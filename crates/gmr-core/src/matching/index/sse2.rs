@@ -2,11 +2,28 @@
 
 use std::arch::x86_64::*;
 
+use super::codes::FURTHEST;
 use super::traverse::Kernel;
 use super::tree::{Edges, Lanes, edges};
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sse2;
+
+/// Two numbers as they lie side by side.
+#[inline(always)]
+fn both([one, other]: [i16; 2]) -> i32 {
+    i32::from(one) & 0xffff | i32::from(other) << 16
+}
+
+/// Codes in parts of a step.
+#[inline(always)]
+fn parts(codes: &[[u8; 2]; 4]) -> __m128i {
+    // SAFETY: every x86-64 has SSE2; the load reads the 8 bytes of `codes`.
+    unsafe {
+        let codes = _mm_loadl_epi64(codes.as_ptr().cast());
+        _mm_slli_epi16::<2>(_mm_unpacklo_epi8(codes, _mm_setzero_si128()))
+    }
+}
 
 impl Kernel<4> for Sse2 {
     type Sums = __m128;
@@ -64,27 +81,41 @@ impl Kernel<4> for Sse2 {
     }
 
     #[inline(always)]
+    fn place(self, q: &Lanes<4>, corner: &Lanes<4>, parts: f32) -> [i16; 4] {
+        let mut placed = [0; 4];
+        // SAFETY: every x86-64 has SSE2; the loads read the 4 numbers of `q` and of `corner`, the store fills `placed`.
+        unsafe {
+            let from_corner = _mm_sub_ps(_mm_loadu_ps(q.as_ptr()), _mm_loadu_ps(corner.as_ptr()));
+            let parts = _mm_mul_ps(from_corner, _mm_set1_ps(parts));
+            let parts = _mm_max_ps(parts, _mm_set1_ps(-FURTHEST));
+            let parts = _mm_cvtps_epi32(_mm_min_ps(parts, _mm_set1_ps(FURTHEST)));
+            _mm_storel_epi64(placed.as_mut_ptr().cast(), _mm_packs_epi32(parts, parts));
+        }
+        placed
+    }
+
+    #[inline(always)]
     fn add_gaps(
         self,
         gaps: __m128i,
-        low: [i16; 2],
-        high: [i16; 2],
+        q: [i16; 2],
+        apart: i16,
         lower: &[[u8; 2]; 4],
         upper: &[[u8; 2]; 4],
     ) -> __m128i {
-        // SAFETY: every x86-64 has SSE2; the loads read the 8 bytes of `lower` and of `upper`.
+        // SAFETY: every x86-64 has SSE2.
         unsafe {
-            let zero = _mm_setzero_si128();
-            let both =
-                |[one, other]: [i16; 2]| _mm_set1_epi32(i32::from(one) & 0xffff | i32::from(other) << 16);
-            let parts = |codes: &[[u8; 2]; 4]| {
-                _mm_slli_epi16::<2>(_mm_unpacklo_epi8(_mm_loadl_epi64(codes.as_ptr().cast()), zero))
-            };
-            let below = _mm_sub_epi16(parts(lower), both(high));
-            let above = _mm_sub_epi16(both(low), parts(upper));
-            let gap = _mm_max_epi16(_mm_max_epi16(below, above), zero);
+            let (q, apart) = (_mm_set1_epi32(both(q)), _mm_set1_epi16(apart));
+            let below = _mm_sub_epi16(parts(lower), q);
+            let above = _mm_sub_epi16(q, parts(upper));
+            let gap = _mm_sub_epi16(_mm_max_epi16(_mm_max_epi16(below, above), apart), apart);
             _mm_add_epi32(gaps, _mm_madd_epi16(gap, gap))
         }
+    }
+
+    #[inline(always)]
+    fn add_differences(self, gaps: __m128i, q: [i16; 2], apart: i16, rows: &[[u8; 2]; 4]) -> __m128i {
+        self.add_gaps(gaps, q, apart, rows, rows)
     }
 
     #[inline(always)]

@@ -13,7 +13,7 @@ use super::Hit;
 use super::Query;
 use super::best::Best;
 use super::metric::Metric;
-use super::tree::{Edges, Lanes, View, W};
+use super::tree::{Edges, Lanes, View, W, Width};
 
 /// What an instruction set does with one number of each of `W` frames or boxes at once.
 ///
@@ -48,16 +48,22 @@ pub(super) trait Kernel<const W: usize>: Copy {
     /// Whole sums of nothing.
     fn no_gaps(self) -> Self::Gaps;
 
-    /// Adds the squares of what a query between `low` and `high` is outside `lower` and `upper`, all in parts of a
-    /// step, in two dimensions side by side: see [`super::codes::gap`].
+    /// Coordinates of a query on a grid: see [`super::codes::place`].
+    fn place(self, q: &Lanes<W>, corner: &Lanes<W>, parts: f32) -> [i16; W];
+
+    /// Adds the squares of how far boxes are from whatever is nearer than `apart` to `q`, all in parts of a step, in two
+    /// dimensions side by side: see [`super::codes::gap`].
     fn add_gaps(
         self,
         gaps: Self::Gaps,
-        low: [i16; 2],
-        high: [i16; 2],
+        q: [i16; 2],
+        apart: i16,
         lower: &[[u8; 2]; W],
         upper: &[[u8; 2]; W],
     ) -> Self::Gaps;
+
+    /// As [`Kernel::add_gaps`] of rows, each its own lower and upper edge.
+    fn add_differences(self, gaps: Self::Gaps, q: [i16; 2], apart: i16, rows: &[[u8; 2]; W]) -> Self::Gaps;
 
     /// Whole sums times `unit`.
     fn in_units(self, gaps: Self::Gaps, unit: f32) -> Self::Sums;
@@ -85,9 +91,9 @@ enum Next {
         level: usize,
         node: usize,
     },
-    /// What rules a leaf out.
-    Leaf(usize),
-    /// Its rows.
+    /// What rules out leaves of the node that is open on the lowest level.
+    Leaves,
+    /// The rows of a leaf.
     Rows(usize),
     Nothing,
 }
@@ -96,31 +102,17 @@ enum Next {
 #[derive(Clone, Copy)]
 struct Open<S> {
     bounds: S,
-    /// The bits of the children after `nearest`.
-    others: u32,
-    nearest: usize,
-    /// The bound of `nearest`; NaN, which is at most nothing, where no child is left.
-    bound: f32,
+    /// The bits of the children still to be looked at.
+    left: u32,
+    /// Whether none has been looked at.
+    is_new: bool,
     node: usize,
 }
 
-impl<S: Copy> Open<S> {
-    /// Makes the nearest of the other children the nearest.
-    #[inline(always)]
-    fn advance<K: Kernel<W, Sums = S>>(&mut self, kernel: K) {
-        if self.others == 0 {
-            self.bound = f32::NAN;
-        } else {
-            (self.nearest, self.bound) = kernel.lowest(self.bounds, self.others);
-            self.others &= !(1 << self.nearest);
-        }
-    }
-}
-
 /// One query on its way through a tree; `ALONE` where no other takes turns with it.
-pub(super) struct Descent<'a, K: Kernel<W>, M, B, const ALONE: bool> {
+pub(super) struct Descent<'a, K: Kernel<W>, D, M, B, const ALONE: bool> {
     kernel: K,
-    tree: View<'a>,
+    tree: View<'a, D>,
     query: Query<'a>,
     metric: M,
     best: B,
@@ -133,25 +125,25 @@ pub(super) struct Descent<'a, K: Kernel<W>, M, B, const ALONE: bool> {
 
 /// Offers every admitted frame that may beat the bound of the query's best to it.
 #[inline(always)]
-pub(super) fn search<'a, K: Kernel<W>, M: Metric, B: Best>(
+pub(super) fn search<'a, K: Kernel<W>, D: Width, M: Metric<D>, B: Best>(
     kernel: K,
-    tree: View<'a>,
+    tree: View<'a, D>,
     query: Query<'a>,
     best: B,
 ) -> B {
-    let mut descent = Descent::<K, M, B, true>::new(kernel, tree, query, best);
+    let mut descent = Descent::<K, D, M, B, true>::new(kernel, tree, query, best);
     while descent.step() {}
     descent.best
 }
 
 /// As [`search`], for one query after the other; finishes what is best for each.
 #[inline(always)]
-pub(super) fn search_all<'a, K: Kernel<W>, M: Metric, B: Best>(
+pub(super) fn search_all<'a, K: Kernel<W>, D: Width, M: Metric<D>, B: Best>(
     kernel: K,
-    tree: View<'a>,
+    tree: View<'a, D>,
     mut asked: impl Iterator<Item = (Query<'a>, B)>,
 ) {
-    let begin = |(query, best)| Descent::<K, M, B, false>::new(kernel, tree, query, best);
+    let begin = |(query, best)| Descent::<K, D, M, B, false>::new(kernel, tree, query, best);
     let mut descents: Vec<_> = asked.by_ref().take(IN_FLIGHT).map(begin).collect();
     while !descents.is_empty() {
         let mut turn = 0;
@@ -169,12 +161,12 @@ pub(super) fn search_all<'a, K: Kernel<W>, M: Metric, B: Best>(
     }
 }
 
-impl<'a, K: Kernel<W>, M: Metric, B: Best, const ALONE: bool> Descent<'a, K, M, B, ALONE> {
+impl<'a, K: Kernel<W>, D: Width, M: Metric<D>, B: Best, const ALONE: bool> Descent<'a, K, D, M, B, ALONE> {
     #[inline(always)]
-    fn new(kernel: K, tree: View<'a>, query: Query<'a>, best: B) -> Self {
+    fn new(kernel: K, tree: View<'a, D>, query: Query<'a>, best: B) -> Self {
         // A term is rounded three times at most, and once more wherever it is added.
         let slack = 1.0 + 2.0 * (tree.dims() + 3) as f32 * f32::EPSILON;
-        let closed = Open { bounds: kernel.zero(), others: 0, nearest: 0, bound: f32::NAN, node: 0 };
+        let closed = Open { bounds: kernel.zero(), left: 0, is_new: false, node: 0 };
         let (level, next) = start(&tree);
         let metric = M::new(&tree, &query);
         Self { kernel, tree, query, metric, best, slack, path: [closed; MOST_LEVELS], level, next }
@@ -189,98 +181,138 @@ impl<'a, K: Kernel<W>, M: Metric, B: Best, const ALONE: bool> Descent<'a, K, M, 
         std::mem::replace(&mut self.best, best)
     }
 
-    /// Reads one block and has the next on its way; false where there is none.
+    /// Reads what is next and has on its way what comes after it; false where there was nothing.
     #[inline(always)]
     fn step(&mut self) -> bool {
-        match self.next {
-            Next::Node { level, node } => self.open(level, node),
-            Next::Leaf(leaf) => {
-                let reach = self.reach(self.best.bound().cost);
-                if self.tree.is_sound_leaf(leaf)
-                    && self.metric.may_reach(self.kernel, &self.tree, leaf, reach)
-                {
-                    self.kernel.fetch(self.tree.leaf(leaf));
-                    self.kernel.fetch(&self.tree.frames[leaf]);
-                    self.next = Next::Rows(leaf);
-                    return true;
-                }
+        let below = match self.next {
+            Next::Node { level, node } => {
+                self.open(level, node);
+                if level == 0 { self.choose_leaves() } else { None }
             }
-            Next::Rows(leaf) => self.look_at_rows(leaf),
+            Next::Leaves => self.rule_out_leaves(),
+            Next::Rows(leaf) => {
+                self.look_at_rows(leaf);
+                self.choose_leaves()
+            }
             Next::Nothing => return false,
-        }
-        self.next = self.choose();
+        };
+        self.next = match below {
+            Some(next) => next,
+            None => self.choose_node(),
+        };
         true
     }
 
-    /// What a lower bound is not above where the cost is not above `cost`.
+    /// What a lower bound is not above where the cost is not above that of the best.
     #[inline(always)]
-    fn reach(&self, cost: f32) -> f32 {
+    fn reach(&self) -> f32 {
         // Products too small to keep their digits differ by no share of themselves, but by next to nothing.
-        cost * self.slack + f32::MIN_POSITIVE
+        self.best.bound().cost * self.slack + f32::MIN_POSITIVE
     }
 
     #[inline(always)]
     fn open(&mut self, level: usize, node: usize) {
         let place = self.tree.place(level, node);
-        let mut children = if self.tree.is_sound_node(place) { self.tree.children(level, node) } else { 0 };
+        let mut left = if self.tree.is_sound_node(place) { self.tree.children(level, node) } else { 0 };
         if self.query.tags != 0 {
-            children &= carrying(&self.tree.node_tags[place], self.query.tags);
+            left &= carrying(&self.tree.node_tags[place], self.query.tags);
         }
         let bounds = self.metric.bounds(self.kernel, &self.tree, place);
-        if level == 0 {
-            self.metric.enter_leaves();
-        }
-        if ALONE {
-            let mut near = self.kernel.at_most(bounds, self.reach(self.best.bound().cost)) & children;
+        if ALONE && level > 0 {
+            let mut near = self.kernel.at_most(bounds, self.reach()) & left;
             while near != 0 {
-                self.fetch(level, node * W + near.trailing_zeros() as usize);
+                self.fetch_node(level - 1, node * W + near.trailing_zeros() as usize);
                 near &= near - 1;
             }
         }
-        let open = &mut self.path[level];
-        *open = Open { bounds, others: children, nearest: 0, bound: 0.0, node };
-        open.advance(self.kernel);
+        self.path[level] = Open { bounds, left, is_new: true, node };
         self.level = level;
     }
 
-    /// The nearest child that may hold a frame that beats the best, of the lowest open node that has one.
+    /// What to read of the leaves below the open node that may hold a frame that beats the best. Where there is none to
+    /// beat yet, nothing could be ruled out: then the rows of the nearest.
     #[inline(always)]
-    fn choose(&mut self) -> Next {
-        let best = self.best.bound();
-        let reach = self.reach(best.cost);
-        let top = self.tree.levels.count().saturating_sub(1);
-        loop {
-            let level = self.level;
-            let open = &mut self.path[level];
-            while open.bound <= reach {
-                let (lane, node) = (open.nearest, open.node);
-                open.advance(self.kernel);
-                // Nothing costs less than nothing: then only a lower frame wins.
-                if best.cost > 0.0 || self.tree.lowest[self.tree.place(level, node)][lane] < best.frame {
-                    let child = node * W + lane;
-                    if !ALONE {
-                        self.fetch(level, child);
-                    }
-                    return match level.checked_sub(1) {
-                        None => Next::Leaf(child),
-                        Some(level) => Next::Node { level, node: child },
-                    };
-                }
-            }
-            if level >= top {
-                return Next::Nothing;
-            }
-            self.level += 1;
+    fn choose_leaves(&mut self) -> Option<Next> {
+        let (best, reach) = (self.best.bound().cost, self.reach());
+        let Open { bounds, left, node, .. } = self.path[0];
+        let near = self.kernel.at_most(bounds, reach) & left;
+        self.path[0].left = near;
+        if near == 0 {
+            return None;
         }
+        if best == f32::INFINITY {
+            let (lane, _) = self.kernel.lowest(bounds, near);
+            self.path[0].left = near & !(1 << lane);
+            return Some(self.choose_rows(node * W + lane));
+        }
+        let mut lanes = near;
+        while lanes != 0 {
+            M::fetch_leaf(self.kernel, &self.tree, node * W + lanes.trailing_zeros() as usize);
+            lanes &= lanes - 1;
+        }
+        Some(Next::Leaves)
     }
 
-    /// Begins to bring a child of a node of this level into the cache.
+    /// The rows of the first leaf that is not ruled out, of those that were chosen.
     #[inline(always)]
-    fn fetch(&self, level: usize, child: usize) {
-        match level.checked_sub(1) {
-            None => M::fetch_leaf(self.kernel, &self.tree, child),
-            Some(below) => M::fetch_node(self.kernel, &self.tree, self.tree.place(below, child)),
+    fn rule_out_leaves(&mut self) -> Option<Next> {
+        let reach = self.reach();
+        let Open { left: mut lanes, node, .. } = self.path[0];
+        while lanes != 0 {
+            let leaf = node * W + lanes.trailing_zeros() as usize;
+            lanes &= lanes - 1;
+            if self.tree.is_sound_leaf(leaf) && self.metric.may_reach(self.kernel, &self.tree, leaf, reach) {
+                self.path[0].left = lanes;
+                return Some(self.choose_rows(leaf));
+            }
         }
+        self.path[0].left = 0;
+        None
+    }
+
+    #[inline(always)]
+    fn choose_rows(&self, leaf: usize) -> Next {
+        self.kernel.fetch(self.tree.leaf(leaf));
+        self.kernel.fetch(&self.tree.frames[leaf]);
+        Next::Rows(leaf)
+    }
+
+    /// A child that may hold a frame that beats the best, of the lowest open node that has one: at first the nearest.
+    /// Then little is left to win by an order.
+    #[inline(always)]
+    fn choose_node(&mut self) -> Next {
+        let (best, reach) = (self.best.bound(), self.reach());
+        let mut level = self.level.max(1);
+        while level < self.tree.levels.count() {
+            let open = &mut self.path[level];
+            let near = self.kernel.at_most(open.bounds, reach) & open.left;
+            if near == 0 {
+                level += 1;
+                continue;
+            }
+            let lane = if open.is_new {
+                self.kernel.lowest(open.bounds, near).0
+            } else {
+                near.trailing_zeros() as usize
+            };
+            let node = open.node;
+            (open.left, open.is_new) = (near & !(1 << lane), false);
+            // Nothing costs less than nothing: then only a lower frame wins.
+            if best.cost > 0.0 || self.tree.lowest[self.tree.place(level, node)][lane] < best.frame {
+                let (level, node) = (level - 1, node * W + lane);
+                if !ALONE {
+                    self.fetch_node(level, node);
+                }
+                return Next::Node { level, node };
+            }
+        }
+        Next::Nothing
+    }
+
+    /// Begins to bring a node into the cache.
+    #[inline(always)]
+    fn fetch_node(&self, level: usize, node: usize) {
+        M::fetch_node(self.kernel, &self.tree, self.tree.place(level, node));
     }
 
     #[inline(always)]
@@ -296,10 +328,9 @@ impl<'a, K: Kernel<W>, M: Metric, B: Best, const ALONE: bool> Descent<'a, K, M, 
             let hit = Hit { frame: self.tree.frames[leaf][lane], cost };
             // What fills the last leaf costs infinitely much, unless nothing counts.
             let is_frame = hit.frame != u32::MAX;
-            if is_frame
-                && hit.beats(self.best.bound())
-                && self.query.admits(hit.frame, self.tree.tags[leaf][lane])
-            {
+            // A query that asks for no tags does not wait for them.
+            let tags = if self.query.tags == 0 { 0 } else { self.tree.tags[leaf][lane] };
+            if is_frame && hit.beats(self.best.bound()) && self.query.admits(hit.frame, tags) {
                 self.best.offer(hit);
                 near &= self.kernel.at_most(costs, self.best.bound().cost);
             }
@@ -309,7 +340,7 @@ impl<'a, K: Kernel<W>, M: Metric, B: Best, const ALONE: bool> Descent<'a, K, M, 
 
 /// The level of the root, and what is read first.
 #[inline(always)]
-fn start(tree: &View) -> (usize, Next) {
+fn start(tree: &View<'_, impl Width>) -> (usize, Next) {
     match (tree.frames.len(), tree.levels.count().checked_sub(1)) {
         (0, _) => (0, Next::Nothing),
         (_, None) => (0, Next::Rows(0)),

@@ -100,9 +100,37 @@ impl Levels {
     }
 }
 
+/// How many numbers a row has.
+pub(super) trait Width: Copy {
+    fn dims(self) -> usize;
+}
+
+/// Known when the tree is met.
+#[derive(Clone, Copy)]
+pub(super) struct AnyWidth(usize);
+
+/// Known when a search is compiled: then so are the sizes of all blocks, and no instruction is spent on them.
+#[derive(Clone, Copy)]
+pub(super) struct Fixed<const DIMS: usize>;
+
+impl Width for AnyWidth {
+    #[inline(always)]
+    fn dims(self) -> usize {
+        self.0
+    }
+}
+
+impl<const DIMS: usize> Width for Fixed<DIMS> {
+    #[inline(always)]
+    fn dims(self) -> usize {
+        DIMS
+    }
+}
+
 /// A tree as a search sees it: where its numbers lie, whatever keeps them.
 #[derive(Clone, Copy)]
-pub(super) struct View<'a> {
+pub(super) struct View<'a, D = AnyWidth> {
+    width: D,
     pub(super) order: &'a [u32],
     pub(super) places: &'a [u32],
     pub(super) axes: &'a Axes,
@@ -122,7 +150,14 @@ pub(super) struct View<'a> {
 
 impl Tree {
     pub(super) fn view(&self) -> View<'_> {
+        self.view_as(AnyWidth(self.order.len()))
+    }
+
+    /// As [`Tree::view`] of a tree whose rows are known to have that width.
+    pub(super) fn view_as<D: Width>(&self, width: D) -> View<'_, D> {
+        assert_eq!(width.dims(), self.order.len());
         View {
+            width,
             order: &self.order,
             places: &self.places,
             axes: &self.axes,
@@ -142,9 +177,10 @@ impl Tree {
     }
 }
 
-impl<'a> View<'a> {
+impl<'a, D: Width> View<'a, D> {
+    #[inline(always)]
     pub(super) fn dims(&self) -> usize {
-        self.order.len()
+        self.width.dims()
     }
 
     /// The frames of a leaf, eight side by side in every dimension.

@@ -51,16 +51,26 @@ impl<K: Kernel<4>> Kernel<8> for Twice<K> {
     }
 
     #[inline(always)]
-    fn add_gaps(
-        self,
-        gaps: Self::Gaps,
-        low: [i16; 2],
-        high: [i16; 2],
-        lower: &Pair,
-        upper: &Pair,
-    ) -> Self::Gaps {
+    fn place(self, q: &Lanes<8>, corner: &Lanes<8>, parts: f32) -> [i16; 8] {
+        let (q, corner) = (q.as_chunks::<4>().0, corner.as_chunks::<4>().0);
+        let mut placed = [0; 8];
+        for (half, placed) in placed.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+            *placed = self.0.place(&q[half], &corner[half], parts);
+        }
+        placed
+    }
+
+    #[inline(always)]
+    fn add_gaps(self, gaps: Self::Gaps, q: [i16; 2], apart: i16, lower: &Pair, upper: &Pair) -> Self::Gaps {
         let (lower, upper) = (lower.as_chunks::<4>().0, upper.as_chunks::<4>().0);
-        let add = |half: usize| self.0.add_gaps(gaps[half], low, high, &lower[half], &upper[half]);
+        let add = |half: usize| self.0.add_gaps(gaps[half], q, apart, &lower[half], &upper[half]);
+        [add(0), add(1)]
+    }
+
+    #[inline(always)]
+    fn add_differences(self, gaps: Self::Gaps, q: [i16; 2], apart: i16, rows: &Pair) -> Self::Gaps {
+        let rows = rows.as_chunks::<4>().0;
+        let add = |half: usize| self.0.add_differences(gaps[half], q, apart, &rows[half]);
         [add(0), add(1)]
     }
 
