@@ -84,9 +84,13 @@ impl Rows<'_> {
             for (lane, &frame) in frames.iter().enumerate() {
                 leaves.frames[leaf][lane] = frame;
                 leaves.tags[leaf][lane] = self.tags.map_or(0, |tags| tags[frame as usize]);
-                let row = self.row(frame);
-                let lanes = rows[lane..].iter_mut().step_by(W);
-                lanes.zip(order).for_each(|(x, &dimension)| *x = row[dimension as usize]);
+            }
+            // All rows at once, for they lie anywhere and each is waited for.
+            let here: [&[f32]; W] = std::array::from_fn(|lane| self.row(frames[lane.min(frames.len() - 1)]));
+            for (lanes, &dimension) in rows.as_chunks_mut::<W>().0.iter_mut().zip(order) {
+                for (x, row) in lanes.iter_mut().zip(here).take(frames.len()) {
+                    *x = row[dimension as usize];
+                }
             }
         }
         leaves
