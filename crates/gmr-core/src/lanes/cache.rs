@@ -31,18 +31,21 @@ fn prefetch_line<T>(place: &T) {
 fn prefetch_line<T>(_place: &T) {}
 
 /// Copies `source` to `target` past the caches. [`settle`] before another thread may read it.
-#[cfg(all(target_arch = "x86_64", not(miri)))]
 pub(crate) fn stream<T: super::Real>(source: &[T], target: &mut [T]) {
+    let done = stream_lines(source, target);
+    target[done..].copy_from_slice(&source[done..]);
+}
+
+/// [`stream`] without the beginning of a cache line at the target's end; how many numbers were copied.
+#[cfg(all(target_arch = "x86_64", not(miri)))]
+#[inline(always)]
+pub(crate) fn stream_lines<T: super::Real>(source: &[T], target: &mut [T]) -> usize {
     use std::arch::x86_64::{__m128i, _mm_loadu_si128, _mm_stream_si128};
     assert_eq!(source.len(), target.len(), "copy of another length");
     let head = (target.as_ptr().align_offset(LINE)).min(target.len());
     let lines = (target.len() - head) * size_of::<T>() / LINE;
-    let tail = head + lines * LINE / size_of::<T>();
     if head > 0 {
         target[..head].copy_from_slice(&source[..head]);
-    }
-    if tail < target.len() {
-        target[tail..].copy_from_slice(&source[tail..]);
     }
     // SAFETY: `lines` whole lines lie in both arrays from `head` on, where the target is aligned to a line; SSE2
     // belongs to every x86-64.
@@ -56,11 +59,13 @@ pub(crate) fn stream<T: super::Real>(source: &[T], target: &mut [T]) {
             (from, to) = (from.add(4), to.add(4));
         }
     }
+    head + lines * LINE / size_of::<T>()
 }
 
 #[cfg(any(not(target_arch = "x86_64"), miri))]
-pub(crate) fn stream<T: super::Real>(source: &[T], target: &mut [T]) {
+pub(crate) fn stream_lines<T: super::Real>(source: &[T], target: &mut [T]) -> usize {
     target.copy_from_slice(source);
+    target.len()
 }
 
 /// Waits until what was streamed can be seen by all.

@@ -83,14 +83,20 @@ impl<'a, T: Copy + Default> SourceRows<'a, T> {
 pub(crate) struct TargetRows<'a, T> {
     data: &'a mut [T],
     width: usize,
+    /// A block that is not written to its place at once, from `first` on, where a cache line begins.
     copy: Vec<T>,
+    first: usize,
     is_streamed: bool,
+    /// How many numbers before `first`, the last of the blocks before, wait for the rest of their cache line: a line
+    /// streamed in two parts would have to be fetched.
+    waiting: usize,
 }
 
 impl<'a, T: Real> TargetRows<'a, T> {
     /// Rows of `width` numbers; `is_large`: they are part of an answer that outgrows the caches.
     pub(crate) fn new(data: &'a mut [T], width: usize, is_large: bool) -> Self {
-        Self { data, width, copy: vec![], is_streamed: is_large && width >= 4 }
+        let is_streamed = is_large && width >= 4;
+        Self { data, width, copy: vec![], first: 0, is_streamed, waiting: 0 }
     }
 
     /// How many rows there are; none where they hold no numbers.
@@ -98,13 +104,16 @@ impl<'a, T: Real> TargetRows<'a, T> {
         self.data.len().checked_div(self.width).unwrap_or(0)
     }
 
-    /// Room for a block of `height` rows, and how far apart they begin. To be followed by [`Self::finish`].
+    /// Room for a block of `height` rows, and how far apart they begin. To be followed by [`Self::finish`]; blocks
+    /// come one after the other.
     #[inline(always)]
     pub(crate) fn block(&mut self, rows: &Range<usize>, height: usize) -> (&mut [T], usize) {
         if self.is_copied(rows, height) {
             let stride = self.width.max(4);
-            self.copy.resize(height * stride, T::ZERO);
-            return (&mut self.copy, stride);
+            if self.copy.is_empty() {
+                self.make_room(height * stride);
+            }
+            return (&mut self.copy[self.first..], stride);
         }
         (&mut self.data[rows.start * self.width..rows.end * self.width], self.width)
     }
@@ -113,14 +122,30 @@ impl<'a, T: Real> TargetRows<'a, T> {
     #[inline(always)]
     pub(crate) fn finish(&mut self, rows: &Range<usize>, height: usize) {
         if self.is_streamed {
-            let place = &mut self.data[rows.start * self.width..rows.end * self.width];
-            cache::stream(&self.copy[..place.len()], place);
+            let is_last = rows.end * self.width == self.data.len();
+            let place = &mut self.data[rows.start * self.width - self.waiting..rows.end * self.width];
+            let copy = &self.copy[self.first - self.waiting..][..place.len()];
+            let done = cache::stream_lines(copy, place);
+            if is_last {
+                place[done..].copy_from_slice(&copy[done..]);
+            }
+            self.waiting = place.len() - done;
+            let end = self.first + rows.len() * self.width;
+            self.copy.copy_within(end - self.waiting..end, self.first - self.waiting);
         } else if self.is_copied(rows, height) {
             let stride = self.width.max(4);
-            for (row, copy) in rows.clone().zip(self.copy.chunks_exact(stride)) {
+            for (row, copy) in rows.clone().zip(self.copy[self.first..].chunks_exact(stride)) {
                 self.data[row * self.width..][..self.width].copy_from_slice(&copy[..self.width]);
             }
         }
+    }
+
+    #[cold]
+    fn make_room(&mut self, count: usize) {
+        let line = cache::LINE / size_of::<T>();
+        self.copy = vec![T::ZERO; count + 2 * line];
+        // Where the offset cannot be known there is no harm but time in beginning anywhere.
+        self.first = line + self.copy.as_ptr().align_offset(cache::LINE).min(line);
     }
 
     fn is_copied(&self, rows: &Range<usize>, height: usize) -> bool {
