@@ -1,7 +1,7 @@
 //! AVX2: 8 frames of `f32`, 4 of `f64`.
 
 use std::arch::x86_64::{
-    __m256, __m256d, _CMP_GT_OQ, _mm_loadu_ps, _mm_storeu_ps, _mm256_add_pd, _mm256_add_ps, _mm256_andnot_pd,
+    __m256, __m256d, _CMP_LE_OQ, _mm_loadu_ps, _mm_storeu_ps, _mm256_add_pd, _mm256_add_ps, _mm256_andnot_pd,
     _mm256_andnot_ps, _mm256_castpd_ps, _mm256_castps_pd, _mm256_castps128_ps256, _mm256_castps256_ps128,
     _mm256_cmp_pd, _mm256_cvtpd_ps, _mm256_div_pd, _mm256_div_ps, _mm256_extractf128_ps,
     _mm256_insertf128_ps, _mm256_loadu_pd, _mm256_loadu_ps, _mm256_movemask_pd, _mm256_mul_pd, _mm256_mul_ps,
@@ -42,7 +42,7 @@ register! {
     /// Four frames.
     F64x4 = __m256d of 4 f64;
     add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd, sqrt _mm256_sqrt_pd, abs abs_f64,
-    splat _mm256_set1_pd, read _mm256_loadu_pd, write _mm256_storeu_pd, load load_f64, store store_f64, any_above any_above,
+    splat _mm256_set1_pd, read _mm256_loadu_pd, write _mm256_storeu_pd, load load_f64, store store_f64, all_at_most all_at_most,
 }
 
 /// Without the sign bit.
@@ -223,7 +223,7 @@ unsafe fn transpose([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
 /// # Safety
 /// The machine must have AVX2.
 #[inline(always)]
-unsafe fn any_above(lanes: __m256d, limit: __m256d) -> bool {
+unsafe fn all_at_most(lanes: __m256d, limit: __m256d) -> bool {
     // SAFETY: the caller's.
-    unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(lanes, limit)) != 0 }
+    unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(lanes, limit)) == 0b1111 }
 }

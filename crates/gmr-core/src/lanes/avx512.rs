@@ -1,7 +1,7 @@
 //! AVX-512: 16 frames of `f32`, 8 of `f64`.
 
 use std::arch::x86_64::{
-    __m512, __m512d, _CMP_GT_OQ, _mm_loadu_ps, _mm_storeu_ps, _mm256_loadu_pd, _mm256_storeu_pd,
+    __m512, __m512d, _CMP_LE_OQ, _mm_loadu_ps, _mm_storeu_ps, _mm256_loadu_pd, _mm256_storeu_pd,
     _mm512_abs_pd, _mm512_abs_ps, _mm512_add_pd, _mm512_add_ps, _mm512_castpd_ps, _mm512_castpd256_pd512,
     _mm512_castps_pd, _mm512_castps128_ps512, _mm512_castps256_ps512, _mm512_castps512_ps128,
     _mm512_cmp_pd_mask, _mm512_cvtpd_ps, _mm512_div_pd, _mm512_div_ps, _mm512_extractf32x4_ps,
@@ -43,7 +43,7 @@ register! {
     /// Eight frames.
     F64x8 = __m512d of 8 f64;
     add _mm512_add_pd, sub _mm512_sub_pd, mul _mm512_mul_pd, div _mm512_div_pd, sqrt _mm512_sqrt_pd, abs _mm512_abs_pd,
-    splat _mm512_set1_pd, read _mm512_loadu_pd, write _mm512_storeu_pd, load load_f64, store store_f64, any_above any_above,
+    splat _mm512_set1_pd, read _mm512_loadu_pd, write _mm512_storeu_pd, load load_f64, store store_f64, all_at_most all_at_most,
 }
 
 /// Four columns of sixteen rows.
@@ -231,7 +231,7 @@ unsafe fn store_four(xy: __m512d, zw: __m512d, start: *mut f64, stride: usize) {
 /// # Safety
 /// The machine must have AVX-512 F.
 #[inline(always)]
-unsafe fn any_above(lanes: __m512d, limit: __m512d) -> bool {
+unsafe fn all_at_most(lanes: __m512d, limit: __m512d) -> bool {
     // SAFETY: the caller's.
-    unsafe { _mm512_cmp_pd_mask::<_CMP_GT_OQ>(lanes, limit) != 0 }
+    unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(lanes, limit) == 0xff }
 }

@@ -86,8 +86,8 @@ pub trait Doubles: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
     /// `value` in every lane.
     fn splat(value: f64) -> Self;
 
-    /// Whether any lane is greater than `limit`.
-    fn any_above(self, limit: f64) -> bool;
+    /// Whether no lane is greater than `limit`, or NaN.
+    fn all_at_most(self, limit: f64) -> bool;
 
     /// `change` applied to the lanes: for what is rare and need not be fast.
     #[must_use]

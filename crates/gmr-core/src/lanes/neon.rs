@@ -1,7 +1,7 @@
 //! NEON: 4 frames of `f32`, 2 of `f64`.
 
 use std::arch::aarch64::{
-    float32x4_t, float64x2_t, vabsq_f32, vabsq_f64, vaddq_f32, vaddq_f64, vcgtq_f64, vcombine_f32,
+    float32x4_t, float64x2_t, vabsq_f32, vabsq_f64, vaddq_f32, vaddq_f64, vcleq_f64, vcombine_f32,
     vcvt_f32_f64, vdivq_f32, vdivq_f64, vdupq_n_f32, vdupq_n_f64, vgetq_lane_u64, vld1q_f32, vld1q_f64,
     vmulq_f32, vmulq_f64, vreinterpretq_f32_f64, vreinterpretq_f64_f32, vsqrtq_f32, vsqrtq_f64, vst1q_f32,
     vst1q_f64, vsubq_f32, vsubq_f64, vtrn1q_f32, vtrn1q_f64, vtrn2q_f32, vtrn2q_f64,
@@ -33,7 +33,7 @@ register! {
     /// Two frames.
     F64x2 = float64x2_t of 2 f64;
     add vaddq_f64, sub vsubq_f64, mul vmulq_f64, div vdivq_f64, sqrt vsqrtq_f64, abs vabsq_f64, splat vdupq_n_f64,
-    read vld1q_f64, write vst1q_f64, load load_f64, store store_f64, any_above any_above,
+    read vld1q_f64, write vst1q_f64, load load_f64, store store_f64, all_at_most all_at_most,
 }
 
 /// Four columns of four rows.
@@ -143,10 +143,10 @@ unsafe fn store_f64([x, y, z, w]: [float64x2_t; 4], start: *mut f64, stride: usi
 /// # Safety
 /// None beyond NEON.
 #[inline(always)]
-unsafe fn any_above(lanes: float64x2_t, limit: float64x2_t) -> bool {
+unsafe fn all_at_most(lanes: float64x2_t, limit: float64x2_t) -> bool {
     // SAFETY: the caller's.
     unsafe {
-        let above = vcgtq_f64(lanes, limit);
-        (vgetq_lane_u64::<0>(above) | vgetq_lane_u64::<1>(above)) != 0
+        let is_within = vcleq_f64(lanes, limit);
+        (vgetq_lane_u64::<0>(is_within) & vgetq_lane_u64::<1>(is_within)) != 0
     }
 }

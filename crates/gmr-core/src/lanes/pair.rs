@@ -51,8 +51,8 @@ impl<D: Doubles> Doubles for Pair<D> {
     }
 
     #[inline(always)]
-    fn any_above(self, limit: f64) -> bool {
-        self.0.any_above(limit) | self.1.any_above(limit)
+    fn all_at_most(self, limit: f64) -> bool {
+        self.0.all_at_most(limit) & self.1.all_at_most(limit)
     }
 
     #[inline(always)]

@@ -8,7 +8,7 @@
 //!   and its inverse, of rows that are known to lie inside the array;
 //! - `scatter(columns, start, rows)`: the same to rows of four numbers, named for each lane;
 //! - `narrow(first, second)`: the `f64` of the first half of the lanes and of the second, as `f32`;
-//! - `any_above(lanes, limit)`: whether a lane is greater than the same lane of `limit`.
+//! - `all_at_most(lanes, limit)`: whether no lane is greater than the same lane of `limit`, or NaN.
 
 /// `Name = raw register of WIDTH numbers`, then the intrinsics and functions that carry out each operation.
 macro_rules! register {
@@ -56,7 +56,7 @@ macro_rules! register {
     (
         $(#[$doc:meta])* $name:ident = $raw:ident of $width:literal f64;
         add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, sqrt $sqrt:ident, abs $abs:ident,
-        splat $splat:ident, read $read:ident, write $write:ident, load $load:ident, store $store:ident, any_above $any_above:ident,
+        splat $splat:ident, read $read:ident, write $write:ident, load $load:ident, store $store:ident, all_at_most $all_at_most:ident,
     ) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
@@ -89,9 +89,9 @@ macro_rules! register {
             }
 
             #[inline(always)]
-            fn any_above(self, limit: f64) -> bool {
+            fn all_at_most(self, limit: f64) -> bool {
                 // SAFETY: registers exist only where `dispatch` has found the instruction set.
-                unsafe { $any_above(self.0, $splat(limit)) }
+                unsafe { $all_at_most(self.0, $splat(limit)) }
             }
 
             #[inline(always)]

@@ -79,8 +79,8 @@ impl Doubles for f64 {
     }
 
     #[inline(always)]
-    fn any_above(self, limit: f64) -> bool {
-        self > limit
+    fn all_at_most(self, limit: f64) -> bool {
+        self <= limit
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! SSE2: 4 frames of `f32`, 2 of `f64`.
 
 use std::arch::x86_64::{
-    __m128, __m128d, _mm_add_pd, _mm_add_ps, _mm_andnot_pd, _mm_andnot_ps, _mm_cmpgt_pd, _mm_cvtpd_ps,
+    __m128, __m128d, _mm_add_pd, _mm_add_ps, _mm_andnot_pd, _mm_andnot_ps, _mm_cmple_pd, _mm_cvtpd_ps,
     _mm_div_pd, _mm_div_ps, _mm_loadu_pd, _mm_loadu_ps, _mm_movehl_ps, _mm_movelh_ps, _mm_movemask_pd,
     _mm_mul_pd, _mm_mul_ps, _mm_set1_pd, _mm_set1_ps, _mm_sqrt_pd, _mm_sqrt_ps, _mm_storeu_pd, _mm_storeu_ps,
     _mm_sub_pd, _mm_sub_ps, _mm_unpackhi_pd, _mm_unpackhi_ps, _mm_unpacklo_pd, _mm_unpacklo_ps,
@@ -33,7 +33,7 @@ register! {
     /// Two frames.
     F64x2 = __m128d of 2 f64;
     add _mm_add_pd, sub _mm_sub_pd, mul _mm_mul_pd, div _mm_div_pd, sqrt _mm_sqrt_pd, abs abs_f64, splat _mm_set1_pd,
-    read _mm_loadu_pd, write _mm_storeu_pd, load load_f64, store store_f64, any_above any_above,
+    read _mm_loadu_pd, write _mm_storeu_pd, load load_f64, store store_f64, all_at_most all_at_most,
 }
 
 /// Without the sign bit.
@@ -155,7 +155,7 @@ unsafe fn store_f64([x, y, z, w]: [__m128d; 4], start: *mut f64, stride: usize) 
 /// # Safety
 /// None beyond SSE2.
 #[inline(always)]
-unsafe fn any_above(lanes: __m128d, limit: __m128d) -> bool {
+unsafe fn all_at_most(lanes: __m128d, limit: __m128d) -> bool {
     // SAFETY: the caller's.
-    unsafe { _mm_movemask_pd(_mm_cmpgt_pd(lanes, limit)) != 0 }
+    unsafe { _mm_movemask_pd(_mm_cmple_pd(lanes, limit)) == 0b11 }
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::euler::EulerColumns;
-use super::half_angle::{Steps, half_angles};
+use super::half_angle::{Halves, Steps, halves_of_large};
 use super::quaternion::multiply_axis;
 use crate::lanes::rows::{SourceRows, groups};
 use crate::lanes::{Lanes, Real};
@@ -14,7 +14,9 @@ pub(crate) struct EulerBlock<L: Lanes> {
     angle_groups: Vec<usize>,
     /// First column of each four that hold a plain channel.
     channel_groups: Vec<usize>,
-    /// Sine and cosine of each column, where it is an angle.
+    /// Half of each column, where it is an angle.
+    halves: Vec<L>,
+    /// Its sine and cosine.
     angles: Vec<[L; 2]>,
     /// Each column as it is, where it is plain.
     channels: Vec<L>,
@@ -44,6 +46,7 @@ impl<L: Lanes> EulerBlock<L> {
         Self {
             angle_groups: groups(&is_angle),
             channel_groups: groups(&is_plain),
+            halves: vec![zero; room],
             angles: vec![[zero; 2]; room],
             channels: vec![zero; room],
             steps: Steps::new(),
@@ -55,8 +58,20 @@ impl<L: Lanes> EulerBlock<L> {
     #[inline(always)]
     pub(crate) fn load(&mut self, rows: &mut SourceRows<'_, f64>, frames: Range<usize>) {
         let (block, stride) = rows.block(&frames, L::WIDTH);
+        let mut halves = Halves::new();
         for &group in &self.angle_groups {
-            let four = half_angles(L::load_doubles(&block[group..], stride), &self.steps);
+            let four = halves.of(L::load_doubles(&block[group..], stride));
+            self.halves[group..group + 4].copy_from_slice(&four);
+        }
+        if halves.had_large() {
+            for &group in &self.angle_groups {
+                let four = halves_of_large(L::load_doubles(&block[group..], stride));
+                self.halves[group..group + 4].copy_from_slice(&four);
+            }
+        }
+        for &group in &self.angle_groups {
+            let [a, b, c, d] = self.halves[group..].as_chunks::<4>().0[0];
+            let four = self.steps.sines_and_cosines([a, b, c, d]);
             self.angles[group..group + 4].copy_from_slice(&four);
         }
         for &group in &self.channel_groups {

@@ -8,62 +8,72 @@ const LARGE_SQUARED: f64 = (1_u64 << 40) as f64 * (1_u64 << 40) as f64;
 /// Adding and subtracting it rounds to a whole number, ties to even: 1.5 * 2^52.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
-/// Sines and cosines of half of four angles in degrees, each pair up to a sign that both share: those of an angle
-/// between -180 and 180 degrees that turns alike.
-///
-/// Whole turns are taken off in `f64` degrees, where that is exact; what is left goes through polynomials of the
-/// register's own width, within 2e-7 (f32) or 6e-16 (f64). NaN and infinities give NaN.
-#[inline(always)]
-pub(super) fn half_angles<L: Lanes>(degrees: [L::Doubles; 4], steps: &Steps<L>) -> [[L; 2]; 4] {
-    let [mut a, mut b, mut c, mut d] = degrees;
-    if is_large(a) | is_large(b) | is_large(c) | is_large(d) {
-        a = a.changed(without_turns);
-        b = b.changed(without_turns);
-        c = c.changed(without_turns);
-        d = d.changed(without_turns);
+/// Halves, in radians, of angles in degrees without their whole turns, which are taken off in `f64` degrees, where that
+/// is exact; four angles at a time, and a look at their size in the end.
+pub(super) struct Halves<D> {
+    squares: D,
+}
+
+impl<D: Doubles> Halves<D> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Self { squares: D::splat(0.0) }
     }
-    let x: [L; 4] = [half(a), half(b), half(c), half(d)];
-    let squared = [x[0] * x[0], x[1] * x[1], x[2] * x[2], x[3] * x[3]];
-    let [sines, cosines] = steps.polynomials(squared);
-    [
-        [x[0] * sines[0], cosines[0]],
-        [x[1] * sines[1], cosines[1]],
-        [x[2] * sines[2], cosines[2]],
-        [x[3] * sines[3], cosines[3]],
-    ]
+
+    /// The halves of four angles, which are right if no angle [`Self::had_large`].
+    #[inline(always)]
+    pub(super) fn of<L: Lanes<Doubles = D>>(&mut self, [a, b, c, d]: [D; 4]) -> [L; 4] {
+        self.squares = self.squares + ((a * a + b * b) + (c * c + d * d));
+        [half(a), half(b), half(c), half(d)]
+    }
+
+    /// Whether one of the angles was large, or none.
+    #[inline(always)]
+    pub(super) fn had_large(&self) -> bool {
+        !self.squares.all_at_most(LARGE_SQUARED)
+    }
+}
+
+/// The halves of four angles, however large.
+#[inline(always)]
+pub(super) fn halves_of_large<L: Lanes>([a, b, c, d]: [L::Doubles; 4]) -> [L; 4] {
+    let small = |degrees: L::Doubles| degrees.changed(without_turns);
+    [half(small(a)), half(small(b)), half(small(c)), half(small(d))]
 }
 
 /// The coefficients of sine and cosine side by side, a register for each, those of the highest power first.
 ///
 /// A step of Horner's scheme waits for the one before. Eight sums that take their steps together leave the processor
 /// enough to do meanwhile; that the steps lie in memory keeps the compiler from taking each sum's in one go.
-pub(crate) struct Steps<L>(Vec<[L; 2]>);
+pub(crate) struct Steps<L> {
+    /// The cosine's first, for which the sine has none.
+    first: L,
+    steps: Vec<[L; 2]>,
+}
 
 impl<L: Lanes> Steps<L> {
     pub(crate) fn new() -> Self {
         let (sine, cosine) = (L::Real::SINE, L::Real::COSINE);
-        // A first step to zero makes the sum what it would begin with.
-        let at =
-            |power: usize| [sine, cosine].map(|c| L::splat(c.get(power).copied().unwrap_or(L::Real::ZERO)));
-        Self((0..sine.len().max(cosine.len())).rev().map(at).collect())
+        let pairs = sine.iter().zip(cosine).map(|(&s, &c)| [L::splat(s), L::splat(c)]);
+        assert_eq!(cosine.len(), sine.len() + 1, "coefficients of the cosine");
+        Self { first: L::splat(cosine[sine.len()]), steps: pairs.rev().collect() }
     }
 
-    /// Both polynomials of each of four numbers.
+    /// Sines and cosines of four angles between -pi/2 and pi/2, within 2e-7 (f32) or 6e-16 (f64).
     #[inline(always)]
-    fn polynomials(&self, x: [L; 4]) -> [[L; 4]; 2] {
-        let zero = L::splat(L::Real::ZERO);
-        let ([mut a, mut b, mut c, mut d], [mut e, mut f, mut g, mut h]) = ([zero; 4], [zero; 4]);
-        for &[sine, cosine] in std::hint::black_box(&self.0[..]) {
-            (a, b, c, d) = (a * x[0] + sine, b * x[1] + sine, c * x[2] + sine, d * x[3] + sine);
-            (e, f, g, h) = (e * x[0] + cosine, f * x[1] + cosine, g * x[2] + cosine, h * x[3] + cosine);
+    pub(super) fn sines_and_cosines(&self, x: [L; 4]) -> [[L; 2]; 4] {
+        let square = [x[0] * x[0], x[1] * x[1], x[2] * x[2], x[3] * x[3]];
+        let [sine, cosine] = self.steps[0];
+        let (mut a, mut b, mut c, mut d) = (sine, sine, sine, sine);
+        let start = |square: L| self.first * square + cosine;
+        let (mut e, mut f, mut g, mut h) = (start(square[0]), start(square[1]), start(square[2]), start(square[3]));
+        for &[sine, cosine] in std::hint::black_box(&self.steps[1..]) {
+            (a, b, c, d) = (a * square[0] + sine, b * square[1] + sine, c * square[2] + sine, d * square[3] + sine);
+            (e, f, g, h) =
+                (e * square[0] + cosine, f * square[1] + cosine, g * square[2] + cosine, h * square[3] + cosine);
         }
-        [[a, b, c, d], [e, f, g, h]]
+        [[x[0] * a, e], [x[1] * b, f], [x[2] * c, g], [x[3] * d, h]]
     }
-}
-
-#[inline(always)]
-fn is_large<D: Doubles>(degrees: D) -> bool {
-    (degrees * degrees).any_above(LARGE_SQUARED)
 }
 
 /// Takes whole turns off the large angles; exact.
@@ -83,10 +93,8 @@ fn half<L: Lanes>(degrees: L::Doubles) -> L {
 }
 
 /// [`half_angles`] of one plain number.
-pub(super) fn half_angle_of<T: Real>(mut degrees: f64) -> [T; 2] {
-    if is_large(degrees) {
-        degrees = degrees.changed(without_turns);
-    }
+pub(super) fn half_angle_of<T: Real>(degrees: f64) -> [T; 2] {
+    let degrees = degrees.changed(without_turns);
     let x = half::<T>(degrees);
     [x * polynomial(T::SINE, x * x), polynomial(T::COSINE, x * x)]
 }
