@@ -55,10 +55,10 @@ fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Rea
         source.load(frames.clone());
         solve(plan, &source, &mut rotations, &mut positions);
         source.prefetch_translations();
-        let (rows, stride) = positions_out.block(&block, L::WIDTH);
+        let (rows, stride) = positions_out.block::<L>(&block);
         store(&position_groups, positions.as_flattened(), rows, stride);
         parts.copy(job, frames, rows, stride);
-        positions_out.finish(&block, L::WIDTH);
+        positions_out.finish::<L>(&block);
         write(&rotation_groups, rotations.as_flattened(), &mut rotations_out, &block);
     }
 }
@@ -73,14 +73,15 @@ pub(crate) fn solve<L: Lanes, S: Source<L>>(
 ) {
     for (index, turn) in plan.turns.iter().enumerate() {
         source.prefetch(index);
+        let mut rotation = rotations[index];
         if let Some(slot) = turn.slot {
             let local = source.rotation(slot);
-            rotations[index] = match turn.above {
+            rotation = match turn.above {
                 None => local,
                 Some(above) => multiply(rotations[above], local),
             };
+            rotations[index] = rotation;
         }
-        let rotation = rotations[index];
         for (bone, index) in plan.bones[turn.bones.clone()].iter().zip(turn.bones.clone()) {
             let vector = source.vector(bone);
             positions[index] = match bone.parent {
@@ -135,9 +136,9 @@ pub(crate) fn write<L: Lanes>(
     block: &Range<usize>,
 ) {
     if !groups.is_empty() {
-        let (rows, stride) = out.block(block, L::WIDTH);
+        let (rows, stride) = out.block::<L>(block);
         store(groups, values, rows, stride);
-        out.finish(block, L::WIDTH);
+        out.finish::<L>(block);
     }
 }
 

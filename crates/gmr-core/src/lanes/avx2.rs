@@ -6,8 +6,8 @@ use std::arch::x86_64::{
     _mm256_cmp_pd, _mm256_cvtpd_ps, _mm256_div_pd, _mm256_div_ps, _mm256_extractf128_ps,
     _mm256_insertf128_ps, _mm256_loadu_pd, _mm256_loadu_ps, _mm256_movemask_pd, _mm256_mul_pd, _mm256_mul_ps,
     _mm256_permute2f128_pd, _mm256_set1_pd, _mm256_set1_ps, _mm256_sqrt_pd, _mm256_sqrt_ps, _mm256_storeu_pd,
-    _mm256_storeu_ps, _mm256_sub_pd, _mm256_sub_ps, _mm256_unpackhi_pd, _mm256_unpackhi_ps,
-    _mm256_unpacklo_pd, _mm256_unpacklo_ps,
+    _mm256_storeu_ps, _mm256_stream_pd, _mm256_stream_ps, _mm256_sub_pd, _mm256_sub_ps, _mm256_unpackhi_pd,
+    _mm256_unpackhi_ps, _mm256_unpacklo_pd, _mm256_unpacklo_ps,
 };
 
 use super::Kernel;
@@ -34,15 +34,16 @@ register! {
     /// Eight frames.
     F32x8 = __m256 of 8 f32, two of F64x4 beside it;
     add _mm256_add_ps, sub _mm256_sub_ps, mul _mm256_mul_ps, div _mm256_div_ps, sqrt _mm256_sqrt_ps, abs abs_f32,
-    splat _mm256_set1_ps, read _mm256_loadu_ps, write _mm256_storeu_ps, load load_f32, store store_f32,
-    scatter scatter, narrow narrow,
+    splat _mm256_set1_ps, read _mm256_loadu_ps, write _mm256_storeu_ps, stream _mm256_stream_ps,
+    load load_f32, store store_f32, scatter scatter, narrow narrow,
 }
 
 register! {
     /// Four frames.
     F64x4 = __m256d of 4 f64;
     add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd, sqrt _mm256_sqrt_pd, abs abs_f64,
-    splat _mm256_set1_pd, read _mm256_loadu_pd, write _mm256_storeu_pd, load load_f64, store store_f64, all_at_most all_at_most,
+    splat _mm256_set1_pd, read _mm256_loadu_pd, write _mm256_storeu_pd, stream _mm256_stream_pd,
+    load load_f64, store store_f64, all_at_most all_at_most,
 }
 
 /// Without the sign bit.

@@ -7,8 +7,9 @@ use std::arch::x86_64::{
     _mm512_cmp_pd_mask, _mm512_cvtpd_ps, _mm512_div_pd, _mm512_div_ps, _mm512_extractf32x4_ps,
     _mm512_extractf64x4_pd, _mm512_insertf32x4, _mm512_insertf32x8, _mm512_insertf64x4, _mm512_loadu_pd,
     _mm512_loadu_ps, _mm512_mul_pd, _mm512_mul_ps, _mm512_set1_pd, _mm512_set1_ps, _mm512_shuffle_f64x2,
-    _mm512_sqrt_pd, _mm512_sqrt_ps, _mm512_storeu_pd, _mm512_storeu_ps, _mm512_sub_pd, _mm512_sub_ps,
-    _mm512_unpackhi_pd, _mm512_unpackhi_ps, _mm512_unpacklo_pd, _mm512_unpacklo_ps,
+    _mm512_sqrt_pd, _mm512_sqrt_ps, _mm512_storeu_pd, _mm512_storeu_ps, _mm512_stream_pd, _mm512_stream_ps,
+    _mm512_sub_pd, _mm512_sub_ps, _mm512_unpackhi_pd, _mm512_unpackhi_ps, _mm512_unpacklo_pd,
+    _mm512_unpacklo_ps,
 };
 
 use super::Kernel;
@@ -35,15 +36,16 @@ register! {
     /// Sixteen frames.
     F32x16 = __m512 of 16 f32, two of F64x8 beside it;
     add _mm512_add_ps, sub _mm512_sub_ps, mul _mm512_mul_ps, div _mm512_div_ps, sqrt _mm512_sqrt_ps, abs _mm512_abs_ps,
-    splat _mm512_set1_ps, read _mm512_loadu_ps, write _mm512_storeu_ps, load load_f32, store store_f32,
-    scatter scatter, narrow narrow,
+    splat _mm512_set1_ps, read _mm512_loadu_ps, write _mm512_storeu_ps, stream _mm512_stream_ps,
+    load load_f32, store store_f32, scatter scatter, narrow narrow,
 }
 
 register! {
     /// Eight frames.
     F64x8 = __m512d of 8 f64;
     add _mm512_add_pd, sub _mm512_sub_pd, mul _mm512_mul_pd, div _mm512_div_pd, sqrt _mm512_sqrt_pd, abs _mm512_abs_pd,
-    splat _mm512_set1_pd, read _mm512_loadu_pd, write _mm512_storeu_pd, load load_f64, store store_f64, all_at_most all_at_most,
+    splat _mm512_set1_pd, read _mm512_loadu_pd, write _mm512_storeu_pd, stream _mm512_stream_pd,
+    load load_f64, store store_f64, all_at_most all_at_most,
 }
 
 /// Four columns of sixteen rows.

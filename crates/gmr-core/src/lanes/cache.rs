@@ -1,6 +1,8 @@
 //! Hints to the memory: fetch what is needed next, and write past the caches what nobody will read soon. Nothing but
 //! speed depends on them; Miri, which knows neither, goes without.
 
+use super::Lanes;
+
 /// Bytes of a cache line.
 pub(crate) const LINE: usize = 64;
 
@@ -31,41 +33,25 @@ fn prefetch_line<T>(place: &T) {
 fn prefetch_line<T>(_place: &T) {}
 
 /// Copies `source` to `target` past the caches. [`settle`] before another thread may read it.
-pub(crate) fn stream<T: super::Real>(source: &[T], target: &mut [T]) {
-    let done = stream_lines(source, target);
+#[inline(always)]
+pub(crate) fn stream<L: Lanes>(source: &[L::Real], target: &mut [L::Real]) {
+    let done = stream_lines::<L>(source, target);
     target[done..].copy_from_slice(&source[done..]);
 }
 
-/// [`stream`] without the beginning of a cache line at the target's end; how many numbers were copied.
-#[cfg(all(target_arch = "x86_64", not(miri)))]
+/// [`stream`] but for a cache line that only begins in the target; how many numbers were copied.
 #[inline(always)]
-pub(crate) fn stream_lines<T: super::Real>(source: &[T], target: &mut [T]) -> usize {
-    use std::arch::x86_64::{__m128i, _mm_loadu_si128, _mm_stream_si128};
+pub(crate) fn stream_lines<L: Lanes>(source: &[L::Real], target: &mut [L::Real]) -> usize {
     assert_eq!(source.len(), target.len(), "copy of another length");
-    let head = (target.as_ptr().align_offset(LINE)).min(target.len());
-    let lines = (target.len() - head) * size_of::<T>() / LINE;
+    let head = target.as_ptr().align_offset(LINE).min(target.len());
+    let end = target.len() - (target.len() - head) % (LINE / size_of::<L::Real>());
     if head > 0 {
         target[..head].copy_from_slice(&source[..head]);
     }
-    // SAFETY: `lines` whole lines lie in both arrays from `head` on, where the target is aligned to a line; SSE2
-    // belongs to every x86-64.
-    unsafe {
-        let mut from: *const __m128i = source.as_ptr().add(head).cast();
-        let mut to: *mut __m128i = target.as_mut_ptr().add(head).cast();
-        for _ in 0..lines {
-            for k in 0..LINE / size_of::<__m128i>() {
-                _mm_stream_si128(to.add(k), _mm_loadu_si128(from.add(k)));
-            }
-            (from, to) = (from.add(4), to.add(4));
-        }
+    if head < end {
+        L::stream(&source[head..end], &mut target[head..end]);
     }
-    head + lines * LINE / size_of::<T>()
-}
-
-#[cfg(any(not(target_arch = "x86_64"), miri))]
-pub(crate) fn stream_lines<T: super::Real>(source: &[T], target: &mut [T]) -> usize {
-    target.copy_from_slice(source);
-    target.len()
+    end
 }
 
 /// Waits until what was streamed can be seen by all.
@@ -80,18 +66,39 @@ pub(crate) fn settle() {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Isa;
+    use crate::lanes::{Kernel, Real};
+
+    struct Streamed<'a, T>(&'a [T], &'a mut [T]);
+
+    impl<T: Real> Kernel<T> for Streamed<'_, T> {
+        #[inline(always)]
+        fn run<L: Lanes<Real = T>>(self) {
+            stream::<L>(self.0, self.1);
+            settle();
+        }
+    }
+
+    fn streams_are_copies<T: Real>(isa: Isa) {
+        let source: Vec<T> = (0..200).map(|k| T::from_f64(f64::from(k))).collect();
+        for start in 0..20 {
+            for length in [0, 1, 15, 16, 17, 31, 100, 170] {
+                let mut target = [-T::ONE; 200];
+                T::dispatch(isa, Streamed(&source[7..7 + length], &mut target[start..start + length]));
+                assert!(
+                    target[start..start + length] == source[7..7 + length],
+                    "{isa}, {length} from {start}"
+                );
+                assert_eq!(target.iter().filter(|&&x| x == -T::ONE).count(), 200 - length, "{isa}");
+            }
+        }
+    }
 
     #[test]
     fn streams_of_any_length_and_alignment_are_copies() {
-        let source: Vec<f32> = (0..200).map(|k| k as f32).collect();
-        for start in 0..20 {
-            for length in [0, 1, 15, 16, 17, 31, 100, 170] {
-                let mut target = vec![-1.0; 200];
-                stream(&source[7..7 + length], &mut target[start..start + length]);
-                settle();
-                assert_eq!(target[start..start + length], source[7..7 + length]);
-                assert_eq!(target.iter().filter(|&&x| x == -1.0).count(), 200 - length);
-            }
+        for isa in Isa::available() {
+            streams_are_copies::<f32>(isa);
+            streams_are_copies::<f64>(isa);
         }
     }
 }

@@ -57,6 +57,9 @@ pub trait Lanes:
     /// The inverse of [`Lanes::load`].
     fn store(self, target: &mut [Self::Real]);
 
+    /// Copies whole cache lines to a place where one begins, past the caches if the instruction set can.
+    fn stream(source: &[Self::Real], target: &mut [Self::Real]);
+
     /// Four consecutive numbers of [`Lanes::WIDTH`] rows that begin `stride` apart: a register for each column.
     fn load_columns(source: &[Self::Real], stride: usize) -> [Self; 4];
 
@@ -133,6 +136,18 @@ pub trait Real:
 
     /// Runs `kernel` with the registers of `isa`, or of [`Isa::Scalar`] where this machine cannot run `isa`.
     fn dispatch(isa: Isa, kernel: impl Kernel<Self>);
+}
+
+/// Panics unless there are as many numbers on both sides, and whole cache lines of them in the target: the check
+/// before raw stores past the caches, which must be aligned.
+#[inline(always)]
+fn check_lines<T>(source: &[T], target: &[T]) {
+    assert!(
+        source.len() == target.len()
+            && target.as_ptr().addr().is_multiple_of(cache::LINE)
+            && size_of_val(target).is_multiple_of(cache::LINE),
+        "no whole cache lines"
+    );
 }
 
 /// Panics unless rows of four numbers, `stride` apart, lie in so many numbers: the check before raw loads and stores.

@@ -25,7 +25,7 @@ register! {
     /// Four frames.
     F32x4 = float32x4_t of 4 f32, two of F64x2 beside it;
     add vaddq_f32, sub vsubq_f32, mul vmulq_f32, div vdivq_f32, sqrt vsqrtq_f32, abs vabsq_f32, splat vdupq_n_f32,
-    read vld1q_f32, write vst1q_f32, load load_f32, store store_f32,
+    read vld1q_f32, write vst1q_f32, stream vst1q_f32, load load_f32, store store_f32,
     scatter scatter, narrow narrow,
 }
 
@@ -33,7 +33,7 @@ register! {
     /// Two frames.
     F64x2 = float64x2_t of 2 f64;
     add vaddq_f64, sub vsubq_f64, mul vmulq_f64, div vdivq_f64, sqrt vsqrtq_f64, abs vabsq_f64, splat vdupq_n_f64,
-    read vld1q_f64, write vst1q_f64, load load_f64, store store_f64, all_at_most all_at_most,
+    read vld1q_f64, write vst1q_f64, stream vst1q_f64, load load_f64, store store_f64, all_at_most all_at_most,
 }
 
 /// Four columns of four rows.

@@ -4,6 +4,7 @@
 //! functions that are named take and give raw registers:
 //!
 //! - `read(start)` and `write(start, register)`: consecutive numbers, one to a lane;
+//! - `stream(start, register)`: `write` past the caches, where the instruction set can, to an aligned place;
 //! - `load(start, stride)` and `store(columns, start, stride)`: [`Lanes::load_columns`](super::Lanes::load_columns)
 //!   and its inverse, of rows that are known to lie inside the array;
 //! - `scatter(columns, start, rows)`: the same to rows of four numbers, named for each lane;
@@ -15,8 +16,8 @@ macro_rules! register {
     (
         $(#[$doc:meta])* $name:ident = $raw:ident of $width:literal f32, two of $doubles:ident beside it;
         add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, sqrt $sqrt:ident, abs $abs:ident,
-        splat $splat:ident, read $read:ident, write $write:ident, load $load:ident, store $store:ident,
-        scatter $scatter:ident, narrow $narrow:ident,
+        splat $splat:ident, read $read:ident, write $write:ident, stream $stream:ident,
+        load $load:ident, store $store:ident, scatter $scatter:ident, narrow $narrow:ident,
     ) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
@@ -29,7 +30,7 @@ macro_rules! register {
             type Doubles = $crate::lanes::pair::Pair<$doubles>;
             const WIDTH: usize = $width;
 
-            register!(@lanes $name, f32, $width, $sqrt, $abs, $splat, $read, $write, $load, $store);
+            register!(@lanes $name, f32, $width, $sqrt, $abs, $splat, $read, $write, $stream, $load, $store);
 
             #[inline(always)]
             fn scatter_columns([x, y, z, w]: [Self; 4], target: &mut [[f32; 4]], rows: &[u16]) {
@@ -56,7 +57,8 @@ macro_rules! register {
     (
         $(#[$doc:meta])* $name:ident = $raw:ident of $width:literal f64;
         add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, sqrt $sqrt:ident, abs $abs:ident,
-        splat $splat:ident, read $read:ident, write $write:ident, load $load:ident, store $store:ident, all_at_most $all_at_most:ident,
+        splat $splat:ident, read $read:ident, write $write:ident, stream $stream:ident,
+        load $load:ident, store $store:ident, all_at_most $all_at_most:ident,
     ) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
@@ -69,7 +71,7 @@ macro_rules! register {
             type Doubles = Self;
             const WIDTH: usize = $width;
 
-            register!(@lanes $name, f64, $width, $sqrt, $abs, $splat, $read, $write, $load, $store);
+            register!(@lanes $name, f64, $width, $sqrt, $abs, $splat, $read, $write, $stream, $load, $store);
 
             #[inline(always)]
             fn load_doubles(source: &[f64], stride: usize) -> [Self; 4] {
@@ -104,7 +106,7 @@ macro_rules! register {
             }
         }
     };
-    (@lanes $name:ident, $real:ident, $width:literal, $sqrt:ident, $abs:ident, $splat:ident, $read:ident, $write:ident, $load:ident, $store:ident) => {
+    (@lanes $name:ident, $real:ident, $width:literal, $sqrt:ident, $abs:ident, $splat:ident, $read:ident, $write:ident, $stream:ident, $load:ident, $store:ident) => {
         #[inline(always)]
         fn splat(value: $real) -> Self {
             // SAFETY: registers exist only where `dispatch` has found the instruction set.
@@ -135,6 +137,21 @@ macro_rules! register {
             assert!($width <= target.len(), "lanes outside the array");
             // SAFETY: as for `splat`; so many numbers lie in `target`, as just checked.
             unsafe { $write(target.as_mut_ptr(), self.0) }
+        }
+
+        #[inline(always)]
+        fn stream(source: &[$real], target: &mut [$real]) {
+            $crate::lanes::check_lines(source, target);
+            if cfg!(miri) {
+                return target.copy_from_slice(source);
+            }
+            const LINE: usize = $crate::lanes::cache::LINE / size_of::<$real>();
+            for (from, to) in source.as_chunks::<LINE>().0.iter().zip(target.as_chunks_mut::<LINE>().0) {
+                for at in (0..LINE).step_by($width) {
+                    // SAFETY: as for `splat`; registers divide a line, and the target's begins where one begins.
+                    unsafe { $stream(to.as_mut_ptr().add(at), $read(from.as_ptr().add(at))) }
+                }
+            }
         }
 
         #[inline(always)]

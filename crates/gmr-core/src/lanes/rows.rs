@@ -104,14 +104,14 @@ impl<'a, T: Real> TargetRows<'a, T> {
         self.data.len().checked_div(self.width).unwrap_or(0)
     }
 
-    /// Room for a block of `height` rows, and how far apart they begin. To be followed by [`Self::finish`]; blocks
-    /// come one after the other.
+    /// Room for a block of [`Lanes::WIDTH`] rows, and how far apart they begin. To be followed by [`Self::finish`].
+    /// Blocks come in the order of the rows, without gaps.
     #[inline(always)]
-    pub(crate) fn block(&mut self, rows: &Range<usize>, height: usize) -> (&mut [T], usize) {
-        if self.is_copied(rows, height) {
+    pub(crate) fn block<L: Lanes<Real = T>>(&mut self, rows: &Range<usize>) -> (&mut [T], usize) {
+        if self.is_copied::<L>(rows) {
             let stride = self.width.max(4);
             if self.copy.is_empty() {
-                self.make_room(height * stride);
+                self.make_room(L::WIDTH * stride);
             }
             return (&mut self.copy[self.first..], stride);
         }
@@ -120,19 +120,19 @@ impl<'a, T: Real> TargetRows<'a, T> {
 
     /// Puts a block in its place that was not written there at once.
     #[inline(always)]
-    pub(crate) fn finish(&mut self, rows: &Range<usize>, height: usize) {
+    pub(crate) fn finish<L: Lanes<Real = T>>(&mut self, rows: &Range<usize>) {
         if self.is_streamed {
             let is_last = rows.end * self.width == self.data.len();
             let place = &mut self.data[rows.start * self.width - self.waiting..rows.end * self.width];
             let copy = &self.copy[self.first - self.waiting..][..place.len()];
-            let done = cache::stream_lines(copy, place);
+            let done = cache::stream_lines::<L>(copy, place);
             if is_last {
                 place[done..].copy_from_slice(&copy[done..]);
             }
             self.waiting = place.len() - done;
             let end = self.first + rows.len() * self.width;
             self.copy.copy_within(end - self.waiting..end, self.first - self.waiting);
-        } else if self.is_copied(rows, height) {
+        } else if self.is_copied::<L>(rows) {
             let stride = self.width.max(4);
             for (row, copy) in rows.clone().zip(self.copy[self.first..].chunks_exact(stride)) {
                 self.data[row * self.width..][..self.width].copy_from_slice(&copy[..self.width]);
@@ -148,8 +148,8 @@ impl<'a, T: Real> TargetRows<'a, T> {
         self.first = line + self.copy.as_ptr().align_offset(cache::LINE).min(line);
     }
 
-    fn is_copied(&self, rows: &Range<usize>, height: usize) -> bool {
-        self.is_streamed || rows.len() < height || self.width < 4
+    fn is_copied<L: Lanes>(&self, rows: &Range<usize>) -> bool {
+        self.is_streamed || rows.len() < L::WIDTH || self.width < 4
     }
 }
 
@@ -165,6 +165,8 @@ impl<T> Drop for TargetRows<'_, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Isa;
+    use crate::lanes::Kernel;
 
     #[test]
     fn groups_of_four_cover_what_is_wanted_and_stay_inside() {
@@ -179,24 +181,37 @@ mod tests {
         assert_eq!(wanted(&[], 0), [0_usize; 0]);
     }
 
+    struct Passed<'a>(SourceRows<'a, f32>, TargetRows<'a, f32>);
+
+    impl Kernel<f32> for Passed<'_> {
+        #[inline(always)]
+        fn run<L: Lanes<Real = f32>>(mut self) {
+            for rows in blocks::<L>(self.1.row_count()) {
+                let (from, stride) = self.0.block(&rows, L::WIDTH);
+                let (to, same_stride) = self.1.block::<L>(&rows);
+                assert_eq!(stride, same_stride);
+                to[..stride * L::WIDTH].copy_from_slice(&from[..stride * L::WIDTH]);
+                self.1.finish::<L>(&rows);
+            }
+        }
+    }
+
     #[test]
     fn short_blocks_and_narrow_rows_come_back_as_they_went() {
-        let shapes = [(3, 9), (3, 1), (7, 9), (4, 8), (5, 0)];
-        for ((width, count), is_large) in shapes.into_iter().flat_map(|s| [(s, false), (s, true)]) {
+        let shapes = [(3, 9), (3, 1), (7, 9), (4, 8), (5, 0), (5, 67), (37, 40)];
+        let cases = shapes.into_iter().flat_map(|s| [(s, false), (s, true)]);
+        for (isa, ((width, count), is_large)) in
+            cases.flat_map(|case| Isa::available().map(move |isa| (isa, case)))
+        {
             let data: Vec<f32> = (0..width * count).map(|k| k as f32).collect();
-            let mut found = vec![-1.0; data.len()];
-            let mut source = SourceRows::new(&data, width);
-            let mut target = TargetRows::new(&mut found, width, is_large);
-            for start in (0..count).step_by(4) {
-                let rows = start..count.min(start + 4);
-                let (from, stride) = source.block(&rows, 4);
-                let (to, same_stride) = target.block(&rows, 4);
-                assert_eq!(stride, same_stride);
-                to[..stride * 4].copy_from_slice(&from[..stride * 4]);
-                target.finish(&rows, 4);
+            for start in 0..5 {
+                let mut room = vec![-1.0; start + data.len() + 1];
+                let found = &mut room[start..start + data.len()];
+                let target = TargetRows::new(found, width, is_large);
+                f32::dispatch(isa, Passed(SourceRows::new(&data, width), target));
+                assert_eq!(found, data, "{isa}, {width} by {count} from {start}");
+                assert_eq!(room.iter().filter(|&&x| x == -1.0).count(), start + 1, "{isa}");
             }
-            drop(target);
-            assert_eq!(found, data);
         }
     }
 }

@@ -32,6 +32,11 @@ macro_rules! plain_number {
         }
 
         #[inline(always)]
+        fn stream(source: &[$real], target: &mut [$real]) {
+            target.copy_from_slice(source);
+        }
+
+        #[inline(always)]
         fn load_columns(source: &[$real], _stride: usize) -> [$real; 4] {
             [source[0], source[1], source[2], source[3]]
         }

@@ -4,7 +4,8 @@ use std::arch::x86_64::{
     __m128, __m128d, _mm_add_pd, _mm_add_ps, _mm_andnot_pd, _mm_andnot_ps, _mm_cmple_pd, _mm_cvtpd_ps,
     _mm_div_pd, _mm_div_ps, _mm_loadu_pd, _mm_loadu_ps, _mm_movehl_ps, _mm_movelh_ps, _mm_movemask_pd,
     _mm_mul_pd, _mm_mul_ps, _mm_set1_pd, _mm_set1_ps, _mm_sqrt_pd, _mm_sqrt_ps, _mm_storeu_pd, _mm_storeu_ps,
-    _mm_sub_pd, _mm_sub_ps, _mm_unpackhi_pd, _mm_unpackhi_ps, _mm_unpacklo_pd, _mm_unpacklo_ps,
+    _mm_stream_pd, _mm_stream_ps, _mm_sub_pd, _mm_sub_ps, _mm_unpackhi_pd, _mm_unpackhi_ps, _mm_unpacklo_pd,
+    _mm_unpacklo_ps,
 };
 
 use super::Kernel;
@@ -25,15 +26,16 @@ register! {
     /// Four frames.
     F32x4 = __m128 of 4 f32, two of F64x2 beside it;
     add _mm_add_ps, sub _mm_sub_ps, mul _mm_mul_ps, div _mm_div_ps, sqrt _mm_sqrt_ps, abs abs_f32, splat _mm_set1_ps,
-    read _mm_loadu_ps, write _mm_storeu_ps, load load_f32, store store_f32,
-    scatter scatter, narrow narrow,
+    read _mm_loadu_ps, write _mm_storeu_ps, stream _mm_stream_ps,
+    load load_f32, store store_f32, scatter scatter, narrow narrow,
 }
 
 register! {
     /// Two frames.
     F64x2 = __m128d of 2 f64;
     add _mm_add_pd, sub _mm_sub_pd, mul _mm_mul_pd, div _mm_div_pd, sqrt _mm_sqrt_pd, abs abs_f64, splat _mm_set1_pd,
-    read _mm_loadu_pd, write _mm_storeu_pd, load load_f64, store store_f64, all_at_most all_at_most,
+    read _mm_loadu_pd, write _mm_storeu_pd, stream _mm_stream_pd,
+    load load_f64, store store_f64, all_at_most all_at_most,
 }
 
 /// Without the sign bit.

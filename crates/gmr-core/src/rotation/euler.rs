@@ -41,8 +41,7 @@ impl EulerColumns<'_> {
 
     /// The rotation of one slot in one row of degrees.
     pub(crate) fn quaternion<T: Real>(&self, slot: usize, row: &[f64]) -> [T; 4] {
-        let turns = self.turns(slot).map(|(column, axis)| (half_angle_of::<T>(row[column]), axis));
-        compose(turns).unwrap_or([T::ZERO, T::ZERO, T::ZERO, T::ONE])
+        compose(self.turns(slot).map(|(column, axis)| (half_angle_of::<T>(row[column]), axis)))
     }
 
     /// The columns and axes of a slot's angles, in composing order.
@@ -141,14 +140,14 @@ impl<T: Real> Kernel<T> for Conversion<'_, T> {
         for frames in blocks::<L>(out.row_count()) {
             block.load(&mut rows, frames.clone());
             let next = (frames.start + L::WIDTH) * self.column_count;
-            let (target, stride) = out.block(&frames, L::WIDTH);
+            let (target, stride) = out.block::<L>(&frames);
             for (slot, axes) in self.turns.iter().enumerate() {
                 cache::prefetch(self.rows, next + slot * share, share);
                 let q = block.quaternion(slot);
                 let q = axes.as_ref().map_or(q, |axes| about(axes, q));
                 L::store_columns(q, &mut target[4 * slot..], stride);
             }
-            out.finish(&frames, L::WIDTH);
+            out.finish::<L>(&frames);
         }
     }
 }
@@ -350,6 +349,25 @@ mod tests {
     fn a_frame_is_needed_for_every_slot() {
         let angles = EulerColumns { columns: &[[0, 1, 2]], axes: &[[0, 1, 2]] };
         assert!(turned_euler_to_quaternions(&[0.0; 3], 3, angles, &[], &mut [0.0; 4]).is_err());
+    }
+
+    #[test]
+    fn a_block_gives_each_row_what_it_has_alone() {
+        let angles = EulerColumns { columns: &[[0, 1, 2], [3, 4, -1]], axes: &[[2, 0, 1], [1, 0, 2]] };
+        let ordinary: Vec<f64> = (0..5 * 40).map(|k| 400.0 * (0.7 * f64::from(k)).sin()).collect();
+        for special in [1e300, -3e15, f64::INFINITY, f64::NAN] {
+            let mut rows = ordinary.clone();
+            (rows[31], rows[88], rows[93]) = (special, f64::NAN, 7e20);
+            let mut found = [0.0_f64; 8 * 40];
+            euler_to_quaternions(&rows, 5, angles, &mut found).unwrap();
+            for (row, found) in rows.chunks(5).zip(found.as_chunks::<8>().0) {
+                let alone = [angles.quaternion(0, row), angles.quaternion(1, row)];
+                assert_eq!(
+                    found.map(f64::to_bits),
+                    *alone.as_flattened().iter().map(|c: &f64| c.to_bits()).collect::<Vec<_>>()
+                );
+            }
+        }
     }
 
     #[test]

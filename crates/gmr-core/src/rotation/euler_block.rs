@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::euler::EulerColumns;
-use super::half_angle::{Halves, Steps, halves_of_large};
+use super::half_angle::{Steps, halves, is_large, squares, without_turns};
 use super::quaternion::multiply_axis;
 use crate::lanes::rows::{SourceRows, groups};
-use crate::lanes::{Lanes, Real};
+use crate::lanes::{Doubles, Lanes, Real};
 
 /// The columns of one block of rows: sines and cosines of half of each angle, and plain channels.
 pub(crate) struct EulerBlock<L: Lanes> {
@@ -21,8 +21,10 @@ pub(crate) struct EulerBlock<L: Lanes> {
     /// Each column as it is, where it is plain.
     channels: Vec<L>,
     steps: Steps<L>,
-    /// For each slot the columns and axes of its angles, in composing order.
-    turns: Vec<Vec<(usize, u8)>>,
+    /// The columns and axes of the angles, slot after slot, each slot's in composing order.
+    turns: Vec<(usize, u8)>,
+    /// Where each slot's begin and end.
+    ranges: Vec<Range<usize>>,
 }
 
 impl<L: Lanes> EulerBlock<L> {
@@ -33,12 +35,14 @@ impl<L: Lanes> EulerBlock<L> {
         plain: &[usize],
         column_count: usize,
     ) -> Self {
-        let mut turns = vec![vec![]; angles.columns.len()];
+        let (mut turns, mut ranges) = (vec![], vec![0..0; angles.columns.len()]);
         let mut is_angle = vec![false; column_count];
         for slot in slots {
-            turns[slot] = angles.turns(slot).collect();
-            turns[slot].iter().for_each(|&(column, _)| is_angle[column] = true);
+            let start = turns.len();
+            turns.extend(angles.turns(slot));
+            ranges[slot] = start..turns.len();
         }
+        turns.iter().for_each(|&(column, _)| is_angle[column] = true);
         let mut is_plain = vec![false; column_count];
         plain.iter().for_each(|&column| is_plain[column] = true);
         let zero = L::splat(L::Real::ZERO);
@@ -51,6 +55,7 @@ impl<L: Lanes> EulerBlock<L> {
             channels: vec![zero; room],
             steps: Steps::new(),
             turns,
+            ranges,
         }
     }
 
@@ -58,15 +63,18 @@ impl<L: Lanes> EulerBlock<L> {
     #[inline(always)]
     pub(crate) fn load(&mut self, rows: &mut SourceRows<'_, f64>, frames: Range<usize>) {
         let (block, stride) = rows.block(&frames, L::WIDTH);
-        let mut halves = Halves::new();
+        let mut sum = L::Doubles::splat(0.0);
         for &group in &self.angle_groups {
-            let four = halves.of(L::load_doubles(&block[group..], stride));
-            self.halves[group..group + 4].copy_from_slice(&four);
+            let degrees = L::load_doubles(&block[group..], stride);
+            sum = sum + squares(degrees);
+            self.halves[group..group + 4].copy_from_slice(&halves(degrees));
         }
-        if halves.had_large() {
+        if is_large(sum) {
             for &group in &self.angle_groups {
-                let four = halves_of_large(L::load_doubles(&block[group..], stride));
-                self.halves[group..group + 4].copy_from_slice(&four);
+                let degrees = L::load_doubles(&block[group..], stride);
+                if is_large(squares(degrees)) {
+                    self.halves[group..group + 4].copy_from_slice(&halves(without_turns(degrees)));
+                }
             }
         }
         for &group in &self.angle_groups {
@@ -93,26 +101,24 @@ impl<L: Lanes> EulerBlock<L> {
     /// A slot's local rotation.
     #[inline(always)]
     pub(crate) fn quaternion(&self, slot: usize) -> [L; 4] {
-        let turns = self.turns[slot].iter();
-        compose(turns.map(|&(column, axis)| (self.angles[column], axis))).unwrap_or_else(|| {
-            let zero = L::splat(L::Real::ZERO);
-            [zero, zero, zero, L::splat(L::Real::ONE)]
-        })
+        let Range { start, end } = self.ranges[slot];
+        let turns = self.turns[start..end].iter();
+        compose(turns.map(|&(column, axis)| (self.angles[column], axis)))
     }
 }
 
-/// The product of turns about axes, each with sine and cosine of half its angle; `None` of none.
+/// The product of turns about axes, each with sine and cosine of half its angle.
 #[inline(always)]
-pub(super) fn compose<L: Lanes>(turns: impl Iterator<Item = ([L; 2], u8)>) -> Option<[L; 4]> {
-    let mut product = None;
+pub(super) fn compose<L: Lanes>(mut turns: impl Iterator<Item = ([L; 2], u8)>) -> [L; 4] {
+    let zero = L::splat(L::Real::ZERO);
+    let Some(([sin, cos], axis)) = turns.next() else { return [zero, zero, zero, L::splat(L::Real::ONE)] };
+    let mut product = match axis {
+        0 => [sin, zero, zero, cos],
+        1 => [zero, sin, zero, cos],
+        _ => [zero, zero, sin, cos],
+    };
     for ([sin, cos], axis) in turns {
-        let zero = L::splat(L::Real::ZERO);
-        product = Some(match (product, axis) {
-            (Some(q), axis) => multiply_axis(q, axis, sin, cos),
-            (None, 0) => [sin, zero, zero, cos],
-            (None, 1) => [zero, sin, zero, cos],
-            (None, _) => [zero, zero, sin, cos],
-        });
+        product = multiply_axis(product, axis, sin, cos);
     }
     product
 }

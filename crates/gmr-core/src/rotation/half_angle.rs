@@ -8,37 +8,28 @@ const LARGE_SQUARED: f64 = (1_u64 << 40) as f64 * (1_u64 << 40) as f64;
 /// Adding and subtracting it rounds to a whole number, ties to even: 1.5 * 2^52.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
-/// Halves, in radians, of angles in degrees without their whole turns, which are taken off in `f64` degrees, where that
-/// is exact; four angles at a time, and a look at their size in the end.
-pub(super) struct Halves<D> {
-    squares: D,
-}
-
-impl<D: Doubles> Halves<D> {
-    #[inline(always)]
-    pub(super) fn new() -> Self {
-        Self { squares: D::splat(0.0) }
-    }
-
-    /// The halves of four angles, which are right if no angle [`Self::had_large`].
-    #[inline(always)]
-    pub(super) fn of<L: Lanes<Doubles = D>>(&mut self, [a, b, c, d]: [D; 4]) -> [L; 4] {
-        self.squares = self.squares + ((a * a + b * b) + (c * c + d * d));
-        [half(a), half(b), half(c), half(d)]
-    }
-
-    /// Whether one of the angles was large, or none.
-    #[inline(always)]
-    pub(super) fn had_large(&self) -> bool {
-        !self.squares.all_at_most(LARGE_SQUARED)
-    }
-}
-
-/// The halves of four angles, however large.
+/// Half of each of four angles in degrees, without its whole turns, in radians: right unless [`is_large`].
 #[inline(always)]
-pub(super) fn halves_of_large<L: Lanes>([a, b, c, d]: [L::Doubles; 4]) -> [L; 4] {
-    let small = |degrees: L::Doubles| degrees.changed(without_turns);
-    [half(small(a)), half(small(b)), half(small(c)), half(small(d))]
+pub(super) fn halves<L: Lanes>([a, b, c, d]: [L::Doubles; 4]) -> [L; 4] {
+    [half(a), half(b), half(c), half(d)]
+}
+
+/// What [`is_large`] is to be asked, of four angles or of a sum over many.
+#[inline(always)]
+pub(super) fn squares<D: Doubles>([a, b, c, d]: [D; 4]) -> D {
+    (a * a + b * b) + (c * c + d * d)
+}
+
+/// Whether there may be a large angle behind these squares; so it is where there is NaN.
+#[inline(always)]
+pub(super) fn is_large<D: Doubles>(squares: D) -> bool {
+    !squares.all_at_most(LARGE_SQUARED)
+}
+
+/// Four angles without whole turns, where they are large.
+#[inline(always)]
+pub(super) fn without_turns<D: Doubles>([a, b, c, d]: [D; 4]) -> [D; 4] {
+    [a.changed(take_turns), b.changed(take_turns), c.changed(take_turns), d.changed(take_turns)]
 }
 
 /// The coefficients of sine and cosine side by side, a register for each, those of the highest power first.
@@ -46,7 +37,7 @@ pub(super) fn halves_of_large<L: Lanes>([a, b, c, d]: [L::Doubles; 4]) -> [L; 4]
 /// A step of Horner's scheme waits for the one before. Eight sums that take their steps together leave the processor
 /// enough to do meanwhile; that the steps lie in memory keeps the compiler from taking each sum's in one go.
 pub(crate) struct Steps<L> {
-    /// The cosine's first, for which the sine has none.
+    /// The cosine's first; the sine has one power less.
     first: L,
     steps: Vec<[L; 2]>,
 }
@@ -59,18 +50,24 @@ impl<L: Lanes> Steps<L> {
         Self { first: L::splat(cosine[sine.len()]), steps: pairs.rev().collect() }
     }
 
-    /// Sines and cosines of four angles between -pi/2 and pi/2, within 2e-7 (f32) or 6e-16 (f64).
+    /// Sines and cosines of four angles between -pi/2 and pi/2, within 2e-7 (f32) or 6e-16 (f64); of NaN NaN.
     #[inline(always)]
     pub(super) fn sines_and_cosines(&self, x: [L; 4]) -> [[L; 2]; 4] {
         let square = [x[0] * x[0], x[1] * x[1], x[2] * x[2], x[3] * x[3]];
         let [sine, cosine] = self.steps[0];
         let (mut a, mut b, mut c, mut d) = (sine, sine, sine, sine);
         let start = |square: L| self.first * square + cosine;
-        let (mut e, mut f, mut g, mut h) = (start(square[0]), start(square[1]), start(square[2]), start(square[3]));
+        let (mut e, mut f, mut g, mut h) =
+            (start(square[0]), start(square[1]), start(square[2]), start(square[3]));
         for &[sine, cosine] in std::hint::black_box(&self.steps[1..]) {
-            (a, b, c, d) = (a * square[0] + sine, b * square[1] + sine, c * square[2] + sine, d * square[3] + sine);
-            (e, f, g, h) =
-                (e * square[0] + cosine, f * square[1] + cosine, g * square[2] + cosine, h * square[3] + cosine);
+            (a, b, c, d) =
+                (a * square[0] + sine, b * square[1] + sine, c * square[2] + sine, d * square[3] + sine);
+            (e, f, g, h) = (
+                e * square[0] + cosine,
+                f * square[1] + cosine,
+                g * square[2] + cosine,
+                h * square[3] + cosine,
+            );
         }
         [[x[0] * a, e], [x[1] * b, f], [x[2] * c, g], [x[3] * d, h]]
     }
@@ -79,11 +76,12 @@ impl<L: Lanes> Steps<L> {
 /// Takes whole turns off the large angles; exact.
 #[cold]
 #[inline(never)]
-fn without_turns(degrees: &mut [f64]) {
+fn take_turns(degrees: &mut [f64]) {
     degrees.iter_mut().filter(|angle| **angle * **angle > LARGE_SQUARED).for_each(|angle| *angle %= 720.0);
 }
 
-/// Half of an angle in degrees without its whole turns, in radians.
+/// Half of an angle in degrees without its whole turns, in radians. They are taken off in `f64` degrees, where that is
+/// exact.
 #[inline(always)]
 fn half<L: Lanes>(degrees: L::Doubles) -> L {
     let number = L::Doubles::splat;
@@ -92,10 +90,10 @@ fn half<L: Lanes>(degrees: L::Doubles) -> L {
     L::narrow(rest * number(std::f64::consts::PI / 360.0))
 }
 
-/// [`half_angles`] of one plain number.
+/// Sine and cosine of half of an angle in degrees, in plain numbers, up to a sign that both share: those of an angle
+/// between -180 and 180 degrees that turns alike. NaN and infinities give NaN.
 pub(super) fn half_angle_of<T: Real>(degrees: f64) -> [T; 2] {
-    let degrees = degrees.changed(without_turns);
-    let x = half::<T>(degrees);
+    let x = half::<T>(if is_large(degrees * degrees) { degrees.changed(take_turns) } else { degrees });
     [x * polynomial(T::SINE, x * x), polynomial(T::COSINE, x * x)]
 }
 

@@ -92,10 +92,15 @@ fn each_window<L: Lanes<Real = f32>, M: Blending>(work: &Work<'_>, frames: &mut 
                 None => blend_runs::<L, M, false>(window, runs, &mut room),
                 Some(normals) => {
                     blend_runs::<L, M, true>(window, runs, &mut room);
-                    put(&room.answers.normals, &mut room.packed, &mut normals[place.clone()], work.is_large);
+                    put::<L>(
+                        &room.answers.normals,
+                        &mut room.packed,
+                        &mut normals[place.clone()],
+                        work.is_large,
+                    );
                 }
             }
-            put(&room.answers.positions, &mut room.packed, &mut positions[place.clone()], work.is_large);
+            put::<L>(&room.answers.positions, &mut room.packed, &mut positions[place.clone()], work.is_large);
         }
     }
     if work.is_large {
@@ -104,14 +109,15 @@ fn each_window<L: Lanes<Real = f32>, M: Blending>(work: &Work<'_>, frames: &mut 
 }
 
 /// Sends the first answers out, as many as there is room for.
-fn put(answers: &[[f32; 4]], packed: &mut [f32], out: &mut [f32], is_large: bool) {
+#[inline(always)]
+fn put<L: Lanes<Real = f32>>(answers: &[[f32; 4]], packed: &mut [f32], out: &mut [f32], is_large: bool) {
     if !is_large {
         return pack(answers, out);
     }
     for (answers, out) in answers.chunks(PACK).zip(out.chunks_mut(3 * PACK)) {
         let packed = &mut packed[..out.len()];
         pack(answers, packed);
-        cache::stream(packed, out);
+        cache::stream::<L>(packed, out);
     }
 }
 

@@ -47,18 +47,28 @@ fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Rea
     let zero = L::splat(L::Real::ZERO);
     let identity = [zero, zero, zero, L::splat(L::Real::ONE)];
     let mut rotations = vec![identity; plan.solving.turns.len()];
-    let mut positions = vec![[zero; 3]; plan.solving.bones.len()];
-    let mut moved = vec![[zero; 3]; plan.vectors.len()];
-    let (turned_width, moved_width) = (4 * plan.turns.len(), 3 * moved.len());
-    let moved_groups = groups((0..moved.len()).zip(0..), 3, moved_width);
+    let bone_count = plan.solving.bones.len();
+    // The positions of the bones' ends, and behind them the translations that are something else.
+    let (mut places, mut moved) = (vec![[zero; 3]; bone_count], vec![]);
+    let (turned_width, moved_width) = (4 * plan.turns.len(), 3 * plan.vectors.len());
+    let items = plan.vectors.iter().map(|vector| match vector {
+        Vector::Place(bone) => *bone,
+        _ => {
+            moved.push(*vector);
+            places.push([zero; 3]);
+            places.len() - 1
+        }
+    });
+    let moved_groups = groups(items.enumerate(), 3, moved_width);
     let mut rotations_out = TargetRows::new(out.rotations.unwrap_or(&mut []), turned_width, is_large);
     let mut translations_out = TargetRows::new(out.positions.unwrap_or(&mut []), moved_width, is_large);
     for block in blocks::<L>(range.len()) {
         source.load(range.start + block.start..range.start + block.end);
-        solve(&plan.solving, &source, &mut rotations, &mut positions);
+        let (positions, vectors) = places.split_at_mut(bone_count);
+        solve(&plan.solving, &source, &mut rotations, positions);
         source.prefetch_translations();
         if turned_width > 0 {
-            let (rows, stride) = rotations_out.block(&block, L::WIDTH);
+            let (rows, stride) = rotations_out.block::<L>(&block);
             for (slot, turn) in plan.turns.iter().enumerate() {
                 let q = match *turn {
                     Turn::Copy(slot) => source.rotation(slot),
@@ -70,9 +80,9 @@ fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Rea
                 };
                 L::store_columns(q, &mut rows[4 * slot..], stride);
             }
-            rotations_out.finish(&block, L::WIDTH);
+            rotations_out.finish::<L>(&block);
         }
-        for (v, vector) in moved.iter_mut().zip(&plan.vectors) {
+        for (v, vector) in vectors.iter_mut().zip(&moved) {
             *v = match *vector {
                 Vector::Copy { bone, is_flipped } => {
                     let bone = &plan.solving.bones[bone];
@@ -89,7 +99,7 @@ fn each_block<L: Lanes, S: Source<L>>(mut source: S, work: Frames<'_, '_, L::Rea
                 }
             };
         }
-        write(&moved_groups, moved.as_flattened(), &mut translations_out, &block);
+        write(&moved_groups, places.as_flattened(), &mut translations_out, &block);
     }
 }
 
