@@ -3,7 +3,7 @@
 use std::arch::x86_64::*;
 
 use super::Work;
-use super::codes::{FURTHEST, Pair};
+use super::codes::{FURTHEST, Pair, both};
 use super::traverse::Kernel;
 use super::tree::{Edges, Lanes, edges};
 use crate::Isa;
@@ -27,12 +27,6 @@ impl Avx2 {
 #[target_feature(enable = "avx2,fma")]
 fn run<T: Work>(kernel: Avx2, work: T) -> T::Done {
     work.run(kernel)
-}
-
-/// Two numbers as they lie side by side.
-#[inline(always)]
-fn both([one, other]: [i16; 2]) -> i32 {
-    i32::from(one) & 0xffff | i32::from(other) << 16
 }
 
 /// Codes in parts of a step.

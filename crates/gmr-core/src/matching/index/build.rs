@@ -13,7 +13,7 @@ type Key = u64;
 /// Frames looked at to choose the axis of a cut; more do not make better cuts.
 const SAMPLE: usize = 64;
 
-/// Frames looked at to put the dimensions in the order of their spread.
+/// Frames looked at to put the dimensions in the order of their spread, and to find the axes.
 const LARGE_SAMPLE: usize = 4096;
 
 /// Features and tags of the candidates of a database.
@@ -103,17 +103,37 @@ impl Rows<'_> {
 
     /// The dimensions, that in which the frames spread most first.
     pub(super) fn widest_first(&self) -> Vec<u32> {
-        let spreads = spreads(&self.keys(), LARGE_SAMPLE, self.dims, |frame| self.row(frame));
+        let spreads = self.spreads();
         let mut order: Vec<u32> = (0..self.dims as u32).collect();
         order.sort_by(|&a, &b| spreads[b as usize].total_cmp(&spreads[a as usize]));
         order
     }
 
-    /// The principal axes of an even sample of the candidates.
-    pub(super) fn axes(&self) -> Axes {
+    /// How far the candidates spread in each dimension: a multiple of the variance.
+    fn spreads(&self) -> Vec<f32> {
         let keys = self.keys();
-        let sample = keys.iter().step_by(keys.len().div_ceil(LARGE_SAMPLE).max(1));
-        Axes::of(sample.map(|&key| self.row(frame_of(key))), self.dims)
+        let mut sample = self.sample(&keys).peekable();
+        let Some(&first) = sample.peek() else { return vec![0.0; self.dims] };
+        let count = sample.len() as f32;
+        let mut sums = vec![[0.0_f32; 2]; self.dims];
+        for row in sample {
+            for (([sum, squares], x), x0) in sums.iter_mut().zip(row).zip(first) {
+                let x = x - x0;
+                *sum += x;
+                *squares += x * x;
+            }
+        }
+        sums.into_iter().map(|[sum, squares]| squares - sum * sum / count).collect()
+    }
+
+    /// The principal axes of the candidates.
+    pub(super) fn axes(&self) -> Axes {
+        Axes::of(self.sample(&self.keys()), self.dims)
+    }
+
+    /// The rows of an even sample of the candidates.
+    fn sample(&self, keys: &[Key]) -> impl ExactSizeIterator<Item = &[f32]> + Clone {
+        keys.iter().step_by(keys.len().div_ceil(LARGE_SAMPLE).max(1)).map(|&key| self.row(frame_of(key)))
     }
 
     /// The codes of a tree of these rows.
@@ -220,23 +240,6 @@ impl Turned {
     fn row(&self, frame: u32) -> &[f32] {
         &self.rows.as_slice()[frame as usize * self.dims..][..self.dims]
     }
-}
-
-/// How far an even sample of the frames spreads in each dimension: a multiple of the variance.
-fn spreads<'a>(keys: &[Key], sample: usize, dims: usize, row: impl Fn(u32) -> &'a [f32]) -> Vec<f32> {
-    let Some(&first) = keys.first() else { return vec![0.0; dims] };
-    let first = row(frame_of(first));
-    let sampled = keys.iter().step_by(keys.len().div_ceil(sample));
-    let count = sampled.len() as f32;
-    let mut sums = vec![[0.0_f32; 2]; dims];
-    for &key in sampled {
-        for (([sum, squares], x), x0) in sums.iter_mut().zip(row(frame_of(key))).zip(first) {
-            let x = x - x0;
-            *sum += x;
-            *squares += x * x;
-        }
-    }
-    sums.into_iter().map(|[sum, squares]| squares - sum * sum / count).collect()
 }
 
 fn frame_of(key: Key) -> u32 {

@@ -89,6 +89,7 @@ impl<'a> Grid<'a> {
     }
 
     /// Whether a search can rely on it.
+    #[cfg(feature = "file")]
     pub(super) fn is_sound(self) -> bool {
         let most = 2.0 * PARTS / SHORTEST;
         self.numbers.iter().all(|x| x.is_finite()) && (0.0..=most).contains(&self.parts) && self.unit >= 0.0
@@ -118,7 +119,7 @@ impl Placed {
     /// Puts a query whose coordinates are wrong by `error` at most on a grid.
     #[inline(always)]
     pub(super) fn place<K: Kernel<W>>(&mut self, kernel: K, turned: &[[f32; W]], error: f32, grid: Grid) {
-        // Further apart than any two numbers on a grid, nothing is ruled out.
+        // Rounded up. Further apart than any two numbers on a grid, nothing is ruled out.
         self.apart = nearest(smaller(SLACK + 0.5 + error * grid.parts, 2.0 * FURTHEST));
         self.unit = grid.unit;
         let corners = grid.numbers.as_chunks::<W>().0;
@@ -185,6 +186,13 @@ fn nearest(x: f32) -> i16 {
 #[inline(always)]
 pub(super) fn place(q: f32, corner: f32, parts: f32) -> i16 {
     nearest(smaller(larger((q - corner) * parts, -FURTHEST), FURTHEST))
+}
+
+/// Two coordinates of a query as they lie side by side.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[inline(always)]
+pub(super) fn both([one, other]: [i16; 2]) -> i32 {
+    i32::from(one) & 0xffff | i32::from(other) << 16
 }
 
 /// How far a box is from whatever is nearer than `apart` to `q`: the definition of what kernels sum.

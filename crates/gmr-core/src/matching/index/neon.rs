@@ -2,7 +2,7 @@
 
 use std::arch::aarch64::*;
 
-use super::codes::FURTHEST;
+use super::codes::{FURTHEST, both};
 use super::traverse::Kernel;
 use super::tree::{Edges, Lanes, edges};
 
@@ -91,8 +91,7 @@ impl Kernel<4> for Neon {
     ) -> int32x4_t {
         // SAFETY: every AArch64 has NEON; the loads read the 8 bytes of `lower` and of `upper`.
         unsafe {
-            let [one, other] = q;
-            let q = vreinterpretq_s16_s32(vdupq_n_s32(i32::from(one) & 0xffff | i32::from(other) << 16));
+            let q = vreinterpretq_s16_s32(vdupq_n_s32(both(q)));
             let parts =
                 |codes: &[[u8; 2]; 4]| vreinterpretq_s16_u16(vshll_n_u8::<2>(vld1_u8(codes.as_ptr().cast())));
             let apart = vdupq_n_s16(apart);

@@ -2,18 +2,12 @@
 
 use std::arch::x86_64::*;
 
-use super::codes::FURTHEST;
+use super::codes::{FURTHEST, both};
 use super::traverse::Kernel;
 use super::tree::{Edges, Lanes, edges};
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sse2;
-
-/// Two numbers as they lie side by side.
-#[inline(always)]
-fn both([one, other]: [i16; 2]) -> i32 {
-    i32::from(one) & 0xffff | i32::from(other) << 16
-}
 
 /// Codes in parts of a step.
 #[inline(always)]
