@@ -129,7 +129,7 @@ fn use_all_of(database: &Database) {
         assert_eq!(database.offsets(row).len(), 3 * database.joint_count());
     }
     let left: Vec<bool> = (0..rows).map(|row| row % 90 != 3).collect();
-    if let Ok(part) = database.subset(&left) {
+    if let Ok(part) = database.subset(&left, 1) {
         let _ = part.index().search(&Query::new(&vec![0.5; part.dims()]));
     }
     // What trials ask for is bounded by their length; a file's rate multiplies it.
@@ -168,7 +168,7 @@ fn walks() -> Database {
             })
             .expect("a clip");
     }
-    builder.finish(None).expect("a database")
+    builder.finish(None, 1).expect("a database")
 }
 
 fn labels() -> Labels {

@@ -22,6 +22,7 @@ class Index:
         features: (N, D), C-contiguous; finite in every candidate row.
         candidates: (N,) rows that can be found; all where left out.
         tags: (N,) bits of each row; none where left out.
+        threads: that build it; 0: all cores. The bits do not depend on it.
 
     Raises:
         ValueError: when shapes do not fit or a candidate's feature is not finite.
@@ -32,6 +33,7 @@ class Index:
         features: NDArray[np.float32],
         candidates: NDArray[np.bool_] | None = None,
         tags: NDArray[np.uint32] | None = None,
+        threads: int = 0,
     ) -> None: ...
     @property
     def dims(self) -> int: ...
@@ -141,8 +143,12 @@ class DatabaseBuilder:
             ValueError: shapes do not fit, or a number is not finite; the builder is as it was.
         """
 
-    def finish(self, offset: list[float] | None = None, scale: list[float] | None = None) -> Database:
+    def finish(
+        self, offset: list[float] | None = None, scale: list[float] | None = None, threads: int = 0
+    ) -> Database:
         """The database, scaled by itself or as given; the builder is then used up.
+
+        ``threads`` build its index, 0: all cores; the bits do not depend on it.
 
         Raises:
             ValueError: no clip holds a candidate, or the scale is of another schema.
@@ -169,8 +175,10 @@ class Database:
     rate: float
     translated: list[int]
     index: Index
-    def subset(self, left: NDArray[np.bool_]) -> Database:
+    def subset(self, left: NDArray[np.bool_], threads: int = 0) -> Database:
         """The same rows, of which only those of (N,) ``left`` may be shown; shares the poses.
+
+        ``threads`` build its index, 0: all cores; the bits do not depend on it.
 
         Raises:
             ValueError: another number of rows, or none that may be jumped to is left.

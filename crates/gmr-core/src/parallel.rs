@@ -1,5 +1,6 @@
 //! Work cut into fixed pieces and shared among threads; the pieces, and so the bits, do not depend on how many.
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The number of threads to use for `asked` (0 means all cores) and this many pieces of work.
@@ -43,15 +44,34 @@ pub fn for_each_chunk<T: Send>(
     threads: usize,
     work: impl Fn(usize, &mut [T]) + Sync,
 ) {
-    let chunk = chunk.max(1);
-    let pieces = out.len().div_ceil(chunk);
-    let slots: Vec<std::sync::Mutex<Option<&mut [T]>>> =
-        out.chunks_mut(chunk).map(|c| std::sync::Mutex::new(Some(c))).collect();
-    for_each_piece(pieces, threads, |i| {
+    for_each_part(out.chunks_mut(chunk.max(1)).enumerate(), threads, |(index, chunk)| work(index, chunk));
+}
+
+/// Runs `work(part)` for every part, on `threads` threads (0: all cores).
+///
+/// What `work` writes must belong to its part; then the result is the same whatever the thread count.
+pub fn for_each_part<T: Send>(parts: impl Iterator<Item = T>, threads: usize, work: impl Fn(T) + Sync) {
+    if thread_count(threads, usize::MAX) == 1 {
+        return parts.for_each(work);
+    }
+    let slots: Vec<Mutex<Option<T>>> = parts.map(|part| Mutex::new(Some(part))).collect();
+    for_each_piece(slots.len(), threads, |i| {
         let taken = slots[i].lock().ok().and_then(|mut slot| slot.take());
-        if let Some(c) = taken {
-            work(i, c);
+        if let Some(part) = taken {
+            work(part);
         }
+    });
+}
+
+/// Runs both, at once where there are `threads` for both; each is told how many it may use itself.
+pub fn join(threads: usize, one: impl FnOnce(usize) + Send, other: impl FnOnce(usize)) {
+    if threads < 2 {
+        one(1);
+        return other(1);
+    }
+    std::thread::scope(|scope| {
+        scope.spawn(|| one(threads / 2));
+        other(threads - threads / 2);
     });
 }
 
@@ -65,6 +85,14 @@ mod tests {
             let mut out = vec![0_usize; 103];
             for_each_chunk(&mut out, 10, threads, |i, c| c.iter_mut().for_each(|x| *x += i + 1));
             assert!(out.iter().enumerate().all(|(k, &x)| x == k / 10 + 1));
+        }
+    }
+    #[test]
+    fn both_halves_are_done_with_all_threads_between_them() {
+        for threads in [1, 2, 5] {
+            let (mut one, mut other) = (0, 0);
+            join(threads, |share| one = share, |share| other = share);
+            assert_eq!(one + other, threads.max(2));
         }
     }
 }

@@ -58,7 +58,7 @@ fn what_is_opened_has_the_bits_of_what_was_saved() {
     let part = {
         let whole = database(&walks());
         let left: Vec<bool> = (0..whole.row_count()).map(|row| !(250..=400).contains(&row)).collect();
-        whole.subset(&left).unwrap()
+        whole.subset(&left, 1).unwrap()
     };
     for (number, saved) in
         [database(&walks()), carried, database_with_a_past(&walks()), part].into_iter().enumerate()

@@ -60,7 +60,7 @@ proptest! {
         let clips: Vec<usize> = (0..walks.len()).filter(|&clip| left[clip]).collect();
         let built = database_scaled_as(&whole, &clips.iter().map(|&clip| walks[clip]).collect::<Vec<_>>());
         let rows: Vec<bool> = whole.clip_of().iter().map(|&clip| left[clip as usize]).collect();
-        let part = whole.subset(&rows).unwrap();
+        let part = whole.subset(&rows, 1).unwrap();
         let every: Vec<usize> = (0..walks.len()).collect();
         let [expected, found] = [(&built, &clips), (&part, &every)]
             .map(|(database, clips)| named(database, &log_of(database, speed, turn_rate), clips));
@@ -78,7 +78,7 @@ proptest! {
         for (clip, first, length) in cuts {
             left[clip * 260 + first..clip * 260 + (first + length).min(260)].fill(false);
         }
-        let part = match whole.subset(&left) {
+        let part = match whole.subset(&left, 1) {
             Err(DatabaseError::NoCandidates { .. }) => return Ok(()),
             part => part.unwrap(),
         };
@@ -114,7 +114,7 @@ proptest! {
             // Itself, the row that continues it with the one after, and what the features of these look at.
             left[row..(row + 63).min(end)].fill(true);
         }
-        let part = whole.subset(&left).unwrap();
+        let part = whole.subset(&left, 1).unwrap();
         let every: Vec<usize> = (0..9).collect();
         let [before, after] = [&whole, &part].map(|database| named(database, &log_of(database, speed, turn_rate), &every));
         prop_assert_eq!(before, after);
@@ -126,7 +126,7 @@ proptest! {
 fn a_part_of_a_part_lacks_what_both_lack() {
     let whole = database(&various());
     let without = |clip: u32| whole.clip_of().iter().map(|&c| c != clip).collect::<Vec<_>>();
-    let part = whole.subset(&without(0)).unwrap().subset(&without(3)).unwrap();
+    let part = whole.subset(&without(0), 1).unwrap().subset(&without(3), 1).unwrap();
     assert!(!part.has_row(5) && !part.has_row(3 * 260) && part.has_row(260));
     assert_eq!(part.index().candidate_count(), 7 * 200);
 }
@@ -136,8 +136,8 @@ fn nothing_left_to_jump_to_is_refused() {
     let whole = database(&various());
     let mut left = vec![false; whole.row_count()];
     left[..60].fill(true);
-    assert_eq!(whole.subset(&left).unwrap_err(), DatabaseError::NoCandidates { needed: 61 });
+    assert_eq!(whole.subset(&left, 1).unwrap_err(), DatabaseError::NoCandidates { needed: 61 });
     left[60] = true;
-    assert_eq!(whole.subset(&left).unwrap().index().candidate_count(), 1);
-    assert!(matches!(whole.subset(&left[1..]), Err(DatabaseError::Shape(_))));
+    assert_eq!(whole.subset(&left, 1).unwrap().index().candidate_count(), 1);
+    assert!(matches!(whole.subset(&left[1..], 1), Err(DatabaseError::Shape(_))));
 }

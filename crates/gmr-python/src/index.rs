@@ -17,12 +17,13 @@ pub(crate) struct PyIndex(pub(crate) Arc<Index>);
 #[pymethods]
 impl PyIndex {
     #[new]
-    #[pyo3(signature = (features, candidates=None, tags=None))]
+    #[pyo3(signature = (features, candidates=None, tags=None, threads=0))]
     fn new(
         py: Python<'_>,
         features: PyReadonlyArray2<'_, f32>,
         candidates: Option<PyReadonlyArray1<'_, bool>>,
         tags: Option<PyReadonlyArray1<'_, u32>>,
+        threads: usize,
     ) -> PyResult<Self> {
         let (frame_count, dims) = features.as_array().dim();
         let everything = candidates.is_none().then(|| vec![true; frame_count]);
@@ -32,7 +33,7 @@ impl PyIndex {
             (None, everything) => everything.as_deref().unwrap_or_default(),
         };
         let tags = tags.as_ref().map(|tags| contiguous("tags", tags.as_slice())).transpose()?;
-        let built = py.detach(|| Index::build(features, dims, candidates, tags));
+        let built = py.detach(|| Index::build(features, dims, candidates, tags, threads));
         built.map(|index| Self(Arc::new(index))).map_err(|error| PyValueError::new_err(error.to_string()))
     }
 

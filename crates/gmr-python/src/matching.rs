@@ -124,17 +124,18 @@ impl PyDatabaseBuilder {
         py.detach(|| builder.add_clip(&clip)).map_err(refused)
     }
 
-    #[pyo3(signature = (offset=None, scale=None))]
+    #[pyo3(signature = (offset=None, scale=None, threads=0))]
     fn finish(
         &mut self,
         py: Python<'_>,
         offset: Option<Vec<f32>>,
         scale: Option<Vec<f32>>,
+        threads: usize,
     ) -> PyResult<PyDatabase> {
         let frozen = offset.zip(scale).map(|(offset, scale)| Normalization { offset, scale });
         self.open()?;
         let builder = self.0.take();
-        let built = builder.map(|builder| py.detach(|| builder.finish(frozen)));
+        let built = builder.map(|builder| py.detach(|| builder.finish(frozen, threads)));
         let database = built.transpose().map_err(refused)?;
         Ok(PyDatabase(Arc::new(database.ok_or_else(finished)?)))
     }
@@ -265,9 +266,10 @@ impl PyDatabase {
         PyIndex(Arc::clone(self.0.index()))
     }
 
-    fn subset(&self, py: Python<'_>, left: PyReadonlyArray1<'_, bool>) -> PyResult<Self> {
+    #[pyo3(signature = (left, threads=0))]
+    fn subset(&self, py: Python<'_>, left: PyReadonlyArray1<'_, bool>, threads: usize) -> PyResult<Self> {
         let left = contiguous("left", left.as_slice())?;
-        py.detach(|| self.0.subset(left)).map(|database| Self(Arc::new(database))).map_err(refused)
+        py.detach(|| self.0.subset(left, threads)).map(|database| Self(Arc::new(database))).map_err(refused)
     }
 
     fn offsets<'py>(&self, py: Python<'py>, row: u32) -> PyResult<Bound<'py, PyArray2<f32>>> {

@@ -103,7 +103,7 @@ class Contest:
         taken = np.array(
             [_recording(clip) not in self.candidates or _recording(clip) in names for clip in self._clips]
         )
-        return self.database.subset(taken[self.database.clips])
+        return self.database.subset(taken[self.database.clips], threads=self.threads)
 
     def shows(self, log: TrialLog, name: str) -> bool:
         """Whether a trial shows a frame of a clip."""

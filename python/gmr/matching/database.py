@@ -72,6 +72,7 @@ class Database(DatabaseRows):
         unit: float | str | None = None,
         tags: Tags | None = None,
         normalization: Normalization | None = None,
+        threads: int | None = None,
     ) -> Database:
         """The database of some clips.
 
@@ -86,6 +87,7 @@ class Database(DatabaseRows):
             default.
             tags: by a clip's name, bits of all its frames (one number) or of each (one number a frame).
             normalization: that of another database with this schema, to compare with it; fitted by default.
+            threads: that build the index; 0 or None: all cores. The bits do not depend on it.
 
         Raises:
             DatasetError: no clip is usable, the skeletons differ, or hips, legs or feet are not found.
@@ -94,9 +96,10 @@ class Database(DatabaseRows):
             raise DatasetError(f"a database cannot have {rate} frames a second; give 1 to 1000")
         seen = survey(named(motions), schema.span, names, unit)
         assembly = assemble(seen, schema, rate, mirror, pairs, tags)
-        fitted = (normalization.offset, normalization.scale) if normalization else (None, None)
+        offset, scale = (normalization.offset, normalization.scale) if normalization else (None, None)
+        total = thread_count(threads)
         try:
-            core = assembly.builder.finish(*fitted)
+            core = assembly.builder.finish(offset, scale, total)
         except ValueError as error:
             raise DatasetError(str(error)) from error
         return cls(
@@ -118,7 +121,7 @@ class Database(DatabaseRows):
 
         return unpacked, (packed(self),)
 
-    def subset(self, left: ArrayLike) -> Database:
+    def subset(self, left: ArrayLike, *, threads: int | None = None) -> Database:
         """The same database, of which only some rows may be shown; nothing is read or measured again.
 
         A row that is gone is neither jumped to nor played on to: where one follows, the clip ends. Nor is a
@@ -128,6 +131,7 @@ class Database(DatabaseRows):
 
         Args:
             left: (N,) whether a row may be shown, of those that may be so far.
+            threads: that build the index; 0 or None: all cores. The bits do not depend on it.
 
         Raises:
             DatasetError: no row that may be jumped to is left.
@@ -137,7 +141,7 @@ class Database(DatabaseRows):
         if mask.shape != (len(self),):
             raise ValueError(f"{mask.shape} rows left; give one entry for each of the {len(self)}")
         try:
-            core = self.core.subset(mask)
+            core = self.core.subset(mask, thread_count(threads))
         except ValueError as error:
             raise DatasetError(str(error)) from error
         return replace(self, core=core)

@@ -65,7 +65,7 @@ def places_of(asked: Runs, again: Again) -> Iterator[tuple[Tracking, list[int]]]
 def logs_on(asked: Runs, again: Again, threads: int = 1) -> list[TrialLog] | None:
     """The logs of some runs on a part of the database, one for each tracking that there are runs of."""
     try:
-        part = asked.database.subset(again.left)
+        part = asked.database.subset(again.left, threads=threads)
     except DatasetError:
         return None
     return [

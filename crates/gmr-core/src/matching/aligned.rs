@@ -9,15 +9,15 @@ const LINE: usize = 64;
 
 /// What may lie in memory that was never anything but bytes.
 #[cfg(feature = "file")]
-pub(super) trait Number: bytemuck::Pod {}
+pub(super) trait Number: bytemuck::Pod + Default {}
 #[cfg(feature = "file")]
-impl<T: bytemuck::Pod> Number for T {}
+impl<T: bytemuck::Pod + Default> Number for T {}
 
 /// What may lie in a column.
 #[cfg(not(feature = "file"))]
-pub(super) trait Number: Copy + 'static {}
+pub(super) trait Number: Copy + Default + 'static {}
 #[cfg(not(feature = "file"))]
-impl<T: Copy + 'static> Number for T {}
+impl<T: Copy + Default + 'static> Number for T {}
 
 /// A fixed number of values, the first at the beginning of a cache line.
 #[derive(Debug)]
@@ -37,23 +37,19 @@ enum Memory<T> {
 }
 
 impl<T: Number> Aligned<T> {
-    pub(super) fn new(fill: T, len: usize) -> Self {
-        let mut aligned = Self::unfilled(fill, len);
-        aligned.as_mut_slice().fill(fill);
-        aligned
-    }
-
-    fn unfilled(any: T, len: usize) -> Self {
+    /// Zeros, in memory that becomes real where it is first written to, by whichever thread does.
+    pub(super) fn zeros(len: usize) -> Self {
         #[cfg(all(feature = "file", target_os = "linux"))]
         if let Some(pages) = pages::of(len.saturating_mul(size_of::<T>())) {
             return Self { memory: Memory::Pages(pages), len };
         }
-        let values = vec![any; len + LINE / size_of::<T>()];
+        let values = vec![T::default(); len + LINE / size_of::<T>()];
         // Where the offset cannot be known there is no harm but time in beginning anywhere.
         let start = values.as_ptr().align_offset(LINE).min(values.len() - len);
         Self { memory: Memory::Own { values, start }, len }
     }
 
+    #[inline(always)]
     pub(super) fn as_slice(&self) -> &[T] {
         match &self.memory {
             Memory::Own { values, start } => &values[*start..][..self.len],
@@ -73,15 +69,7 @@ impl<T: Number> Aligned<T> {
 
 impl<T: Number> Clone for Aligned<T> {
     fn clone(&self) -> Self {
-        let kept = match &self.memory {
-            Memory::Own { values, .. } => values.first(),
-            #[cfg(all(feature = "file", target_os = "linux"))]
-            Memory::Pages(_) => self.as_slice().first(),
-        };
-        let Some(&any) = kept else {
-            return Self { memory: Memory::Own { values: Vec::new(), start: 0 }, len: 0 };
-        };
-        let mut copy = Self::unfilled(any, self.len);
+        let mut copy = Self::zeros(self.len);
         copy.as_mut_slice().copy_from_slice(self.as_slice());
         copy
     }
@@ -113,8 +101,8 @@ mod tests {
     #[test]
     fn values_and_their_copies_begin_on_a_line() {
         for len in [0, 1, 15, 16, 1000, 300_000, 524_288, 600_001] {
-            let mut aligned = Aligned::new(1.0_f32, len);
-            assert!(aligned.as_slice().iter().all(|x| *x == 1.0));
+            let mut aligned = Aligned::<f32>::zeros(len);
+            assert_eq!(aligned.as_slice(), vec![0.0; len]);
             aligned.as_mut_slice().fill(2.0);
             let copy = aligned.clone();
             for aligned in [&aligned, &copy] {

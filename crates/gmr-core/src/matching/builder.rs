@@ -19,7 +19,7 @@
 //!     },
 //!     tags: &[],
 //! })?;
-//! let database = builder.finish(None)?;
+//! let database = builder.finish(None, 1)?;
 //! assert_eq!(database.row_count(), 100);
 //! assert_eq!(database.candidates().iter().filter(|&&c| c).count(), 40);
 //! assert!((database.step(7).displacement[1] * 60.0 - 1.0).abs() < 1e-4);
@@ -240,11 +240,16 @@ impl DatabaseBuilder {
         Ok(index)
     }
 
-    /// The database of all clips added, scaled by its own candidates or by `frozen`.
+    /// The database of all clips added, scaled by its own candidates or by `frozen`; its index is built by `threads`
+    /// threads (0: all cores), on which its bits do not depend.
     ///
     /// # Errors
     /// When no clip holds a candidate, `frozen` belongs to another schema, or a feature is too large for a number.
-    pub fn finish(mut self, frozen: Option<Normalization>) -> Result<Database, DatabaseError> {
+    pub fn finish(
+        mut self,
+        frozen: Option<Normalization>,
+        threads: usize,
+    ) -> Result<Database, DatabaseError> {
         if !self.rows.candidates.contains(&true) {
             return Err(DatabaseError::NoCandidates { needed: self.needed_frames() });
         }
@@ -258,7 +263,8 @@ impl DatabaseBuilder {
         };
         normalization.normalize(&mut self.rows.features);
         let rows = &self.rows;
-        let index = Index::build(&rows.features, self.schema.dims(), &rows.candidates, Some(&rows.tags))?;
+        let index =
+            Index::build(&rows.features, self.schema.dims(), &rows.candidates, Some(&rows.tags), threads)?;
         Ok(Database {
             topology: self.topology,
             translated: self.translated,
@@ -443,7 +449,7 @@ mod tests {
         let walk = Walk::new(0.5, [0.1, -0.9, 0.2]);
         let mut builder = builder();
         builder.add_clip(&walk.clip()).unwrap();
-        let database = builder.finish(None).unwrap();
+        let database = builder.finish(None, 1).unwrap();
         for row in 0..FRAMES as u32 {
             let expected = [0.0, 0.9, 0.0, 0.1, 0.0, 0.2];
             assert!(database.position_row(row).iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6));
@@ -458,7 +464,7 @@ mod tests {
         let walk = Walk::new(-1.0, [0.1, -0.9, 0.2]);
         let mut builder = builder();
         builder.add_clip(&walk.clip()).unwrap();
-        let database = builder.finish(None).unwrap();
+        let database = builder.finish(None, 1).unwrap();
         let mut root = walk.root.at(0);
         assert_eq!((root.position.to_array(), root.heading), (database.ground()[0], database.heading()[0]));
         for row in 0..FRAMES as u32 - 1 {
@@ -478,7 +484,7 @@ mod tests {
         let (a, b) = (Walk::new(0.0, [0.1, -0.9, 0.2]), Walk::new(1.0, [0.1, -0.8, 0.2]));
         assert_eq!(builder.add_clip(&a.clip()), Ok(0));
         assert_eq!(builder.add_clip(&b.clip()), Ok(1));
-        let database = builder.finish(None).unwrap();
+        let database = builder.finish(None, 1).unwrap();
         for row in 0..2 * FRAMES {
             assert_eq!(database.candidates()[row], row % FRAMES < 30);
         }
@@ -497,10 +503,10 @@ mod tests {
         let mut whole = builder();
         whole.add_clip(&a.clip()).unwrap();
         whole.add_clip(&b.clip()).unwrap();
-        let whole = whole.finish(None).unwrap();
+        let whole = whole.finish(None, 1).unwrap();
         let mut part = builder();
         part.add_clip(&b.clip()).unwrap();
-        let part = part.finish(Some(whole.normalization().clone())).unwrap();
+        let part = part.finish(Some(whole.normalization().clone()), 1).unwrap();
         assert_eq!(part.features(), &whole.features()[FRAMES * 27..]);
     }
 
@@ -514,7 +520,7 @@ mod tests {
         positions[6 * 7 + 2] = f32::NAN;
         let broken = ClipPoses { positions: &positions, ..walk.clip() };
         assert_eq!(builder.add_clip(&broken), Err(DatabaseError::NotFinite { what: "positions", frame: 7 }));
-        assert_eq!(builder.finish(None).unwrap_err(), DatabaseError::NoCandidates { needed: 61 });
+        assert_eq!(builder.finish(None, 1).unwrap_err(), DatabaseError::NoCandidates { needed: 61 });
         let fixed = Topology::new(&[-1, 0], &[-1, -1], 0).unwrap();
         let schema = Schema::locomotion(1, 1, 0, 2).unwrap();
         let refused = DatabaseBuilder::new(fixed, vec![0], schema, 60.0);

@@ -21,6 +21,7 @@ use safetensors::tensor::{Dtype, Metadata, TensorInfo};
 use safetensors::{SafeTensorError, SafeTensors};
 use serde::{Deserialize, Serialize};
 
+use super::aligned::Number;
 use super::builder::check_skeleton;
 use super::column::Column;
 use super::database::{Clip, Database, Rows};
@@ -389,7 +390,7 @@ impl Opened {
     }
 
     /// An array of this type and shape, where a length may be any.
-    fn column<T: bytemuck::Pod>(
+    fn column<T: Number>(
         &self,
         name: &str,
         dtype: Dtype,

@@ -40,11 +40,12 @@ impl Left {
 }
 
 impl Database {
-    /// The rows for which `left` holds (N), of those that were left so far; the poses are shared, the index is new.
+    /// The rows for which `left` holds (N), of those that were left so far; the poses are shared, the index is new and
+    /// built by `threads` threads (0: all cores), on which its bits do not depend.
     ///
     /// # Errors
     /// When `left` has not one entry a row, or no row that may be jumped to is left.
-    pub fn subset(&self, left: &[bool]) -> Result<Self, DatabaseError> {
+    pub fn subset(&self, left: &[bool], threads: usize) -> Result<Self, DatabaseError> {
         ShapeError::check("rows left", self.row_count(), left.len())?;
         let rows: Vec<u8> = (0..).zip(left).map(|(row, &left)| u8::from(left && self.has_row(row))).collect();
         let part = Self { left: Some(Arc::new(Left::new(rows))), ..self.clone() };
@@ -52,7 +53,8 @@ impl Database {
             let needed = self.schema().past() + 1 + self.schema().future();
             return Err(DatabaseError::NoCandidates { needed });
         }
-        let index = Index::build(self.features(), self.dims(), part.candidates(), Some(self.tags()))?;
+        let index =
+            Index::build(self.features(), self.dims(), part.candidates(), Some(self.tags()), threads)?;
         Ok(Self { index: Arc::new(index), ..part })
     }
 

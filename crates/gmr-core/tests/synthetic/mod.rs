@@ -88,14 +88,14 @@ pub fn database_scaled_as(other: &Database, clips: &[Walk]) -> Database {
     let schema = Schema::locomotion(1, 2, 0, 4).unwrap();
     let mut builder = DatabaseBuilder::new(plain.topology(), plain.translated(), schema, RATE).unwrap();
     clips.iter().for_each(|clip| clip.add_to(&mut builder, RATE, plain));
-    builder.finish(Some(other.normalization().clone())).unwrap()
+    builder.finish(Some(other.normalization().clone()), 1).unwrap()
 }
 
 fn database_with(rate: f64, skeleton: Skeleton, schema: Schema, clips: &[Walk]) -> Database {
     let (topology, translated) = (skeleton.topology(), skeleton.translated());
     let mut builder = DatabaseBuilder::new(topology, translated, schema, rate).unwrap();
     clips.iter().for_each(|clip| clip.add_to(&mut builder, rate, skeleton));
-    builder.finish(None).unwrap()
+    builder.finish(None, 1).unwrap()
 }
 
 impl Walk {

@@ -41,6 +41,7 @@ impl Axes {
     }
 
     /// The axes of these rows, each of `dims` numbers.
+    #[inline(always)]
     pub(super) fn of<'a>(rows: impl Iterator<Item = &'a [f32]> + Clone, dims: usize) -> Self {
         let count = rows.clone().count().max(1) as f64;
         let mut mean = vec![0.0; dims];
@@ -50,20 +51,13 @@ impl Axes {
         if axis_blocks(dims) == 0 {
             return Self::new(mean, Vec::new());
         }
-        let mut covariance = vec![0.0; dims * dims];
-        for row in rows {
-            let x: Vec<f64> = row.iter().zip(&mean).map(|(&x, mean)| f64::from(x) - mean).collect();
-            for (line, x_i) in covariance.chunks_exact_mut(dims).zip(&x) {
-                line.iter_mut().zip(&x).for_each(|(c, x_j)| *c += x_i * x_j / count);
-            }
-        }
-        let (variances, vectors) = eigenvectors(covariance, dims);
+        let (variances, vectors) = eigenvectors(covariance(rows, &mean), dims);
         let mut order: Vec<usize> = (0..dims).collect();
         order.sort_by(|&a, &b| variances[b].total_cmp(&variances[a]));
         let mut turn = vec![0.0; axis_blocks(dims) * W * dims];
         for (axis, &vector) in order.iter().enumerate() {
             for dimension in 0..dims {
-                turn[(axis / W * dims + dimension) * W + axis % W] = vectors[dimension * dims + vector];
+                turn[(axis / W * dims + dimension) * W + axis % W] = vectors[vector * dims + dimension];
             }
         }
         Self::new(mean, turn)
@@ -143,8 +137,31 @@ fn coordinate(x: f64) -> f32 {
     x.clamp(-LARGEST, LARGEST) as f32
 }
 
-/// Eigenvalues of a symmetric matrix and, in columns, its eigenvectors, by cyclic rotations (Jacobi 1846; the choice
-/// of angle of Rutishauser 1966).
+/// The covariance of rows with this mean, D x D.
+#[inline(always)]
+fn covariance<'a>(rows: impl Iterator<Item = &'a [f32]> + Clone, mean: &[f64]) -> Vec<f64> {
+    let dims = mean.len();
+    let count = rows.clone().count().max(1) as f64;
+    let mut covariance = vec![0.0; dims * dims];
+    let mut x = vec![0.0; dims];
+    for row in rows {
+        x.iter_mut().zip(row).zip(mean).for_each(|((x, &number), mean)| *x = f64::from(number) - mean);
+        for (i, line) in covariance.chunks_exact_mut(dims).enumerate() {
+            let x_i = x[i];
+            line[i..].iter_mut().zip(&x[i..]).for_each(|(c, x_j)| *c += x_i * x_j / count);
+        }
+    }
+    for i in 0..dims {
+        for j in 0..i {
+            covariance[i * dims + j] = covariance[j * dims + i];
+        }
+    }
+    covariance
+}
+
+/// Eigenvalues of a symmetric matrix and, in rows, its eigenvectors, by cyclic rotations (Jacobi 1846; the choice of
+/// angle of Rutishauser 1966).
+#[inline(always)]
 fn eigenvectors(mut a: Vec<f64>, n: usize) -> (Vec<f64>, Vec<f64>) {
     let mut v: Vec<f64> = (0..n * n).map(|i| if i / n == i % n { 1.0 } else { 0.0 }).collect();
     for _ in 0..MOST_SWEEPS {
@@ -160,16 +177,11 @@ fn eigenvectors(mut a: Vec<f64>, n: usize) -> (Vec<f64>, Vec<f64>) {
                 let t = 1.0_f64.copysign(theta) / (theta.abs() + (theta * theta + 1.0).sqrt());
                 let c = 1.0 / (t * t + 1.0).sqrt();
                 let s = t * c;
-                for k in 0..n {
-                    let (a_kp, a_kq) = (a[k * n + p], a[k * n + q]);
-                    (a[k * n + p], a[k * n + q]) = (c * a_kp - s * a_kq, s * a_kp + c * a_kq);
+                for line in a.chunks_exact_mut(n) {
+                    (line[p], line[q]) = (c * line[p] - s * line[q], s * line[p] + c * line[q]);
                 }
-                for k in 0..n {
-                    let (a_pk, a_qk) = (a[p * n + k], a[q * n + k]);
-                    (a[p * n + k], a[q * n + k]) = (c * a_pk - s * a_qk, s * a_pk + c * a_qk);
-                    let (v_kp, v_kq) = (v[k * n + p], v[k * n + q]);
-                    (v[k * n + p], v[k * n + q]) = (c * v_kp - s * v_kq, s * v_kp + c * v_kq);
-                }
+                rotate(&mut a, n, [p, q], c, s);
+                rotate(&mut v, n, [p, q], c, s);
             }
         }
         if is_diagonal {
@@ -177,6 +189,15 @@ fn eigenvectors(mut a: Vec<f64>, n: usize) -> (Vec<f64>, Vec<f64>) {
         }
     }
     ((0..n).map(|i| a[i * n + i]).collect(), v)
+}
+
+/// Rotates line `p`, the earlier one, against line `q` of `n` numbers a line.
+#[inline(always)]
+fn rotate(lines: &mut [f64], n: usize, [p, q]: [usize; 2], c: f64, s: f64) {
+    let (before, from_q) = lines.split_at_mut(q * n);
+    for (x_p, x_q) in before[p * n..][..n].iter_mut().zip(&mut from_q[..n]) {
+        (*x_p, *x_q) = (c * *x_p - s * *x_q, s * *x_p + c * *x_q);
+    }
 }
 
 #[cfg(test)]

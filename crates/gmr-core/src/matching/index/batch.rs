@@ -176,7 +176,9 @@ impl Index {
                 tree.axes.turn(&batch.queries[query * self.dims..][..self.dims], &mut turned);
                 let first = turned[0].iter().take(SORTED_AXES.min(self.dims)).enumerate();
                 let place = first.fold(0, |place, (axis, &q)| {
-                    place | SPREAD[usize::from(grid.steps(axis, q) as u8 >> 4)] << (SORTED_AXES - 1 - axis)
+                    place
+                        | SPREAD[usize::from(grid.steps(grid.numbers[axis], q) as u8 >> 4)]
+                            << (SORTED_AXES - 1 - axis)
                 });
                 (place, query as u32)
             })

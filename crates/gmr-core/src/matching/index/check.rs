@@ -1,8 +1,9 @@
 //! Whether an index is that of some rows, in full: every number of it is looked at.
 
-use super::build::{Rows, nodes_above};
+use super::boxes::nodes_above;
+use super::build::Rows;
 use super::tree::{Tree, View};
-use super::{Index, IndexError};
+use super::{Index, IndexError, Kernels};
 use crate::error::ShapeError;
 
 /// What an index is held against.
@@ -26,7 +27,7 @@ impl Index {
         ShapeError::check("candidates", self.frame_count, candidates.len())?;
         ShapeError::check("tags", self.frame_count, tags.len())?;
         let truth = Truth { features, candidates, tags };
-        let found = truth.check(&self.tree);
+        let found = truth.check(&self.tree, self.kernels);
         // Damage says more than what it leads to.
         self.check_soundness()?;
         found.map_err(|what| IndexError::Contrary { what })
@@ -34,7 +35,7 @@ impl Index {
 }
 
 impl Truth<'_> {
-    fn check(&self, tree: &Tree) -> Result<(), String> {
+    fn check(&self, tree: &Tree, kernels: Kernels) -> Result<(), String> {
         let tree = &tree.view();
         let mut met = vec![false; self.candidates.len()];
         for leaf in 0..tree.levels.leaf_count() {
@@ -46,7 +47,7 @@ impl Truth<'_> {
         if let Some(node) = (0..tree.levels.node_count()).find(|&node| !tree.is_sound_node(node)) {
             return Err(format!("node {node} is damaged"));
         }
-        let right = nodes_above(tree.rows, tree.frames, tree.tags, tree.levels, tree.dims());
+        let right = nodes_above(tree.rows, tree.frames, tree.tags, tree.levels, tree.dims(), 0);
         let is_right = right.boxes.as_slice() == tree.boxes
             && right.lowest == tree.lowest
             && right.tags == tree.node_tags;
@@ -59,10 +60,11 @@ impl Truth<'_> {
             candidates: self.candidates,
             tags: Some(self.tags),
         };
-        if *tree.axes != rows.axes() || *tree.order != rows.widest_first() {
+        let frames = rows.frames();
+        if *tree.axes != rows.axes(&frames, kernels) || *tree.order != rows.widest_first(&frames) {
             return Err("its axes are not those of the rows".to_owned());
         }
-        let codes = rows.codes(tree);
+        let codes = rows.codes(tree, kernels);
         let are_codes_right = *codes.grids == *tree.grids
             && *codes.boxes == *tree.node_codes
             && *codes.rows == *tree.leaf_codes;

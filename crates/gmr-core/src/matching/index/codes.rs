@@ -5,30 +5,29 @@
 //! row to the nearest; a query is told in quarters of a step, and how many of them it may be off, whatever is rounded on
 //! the way. So what is summed is never above the squared distance.
 
-use super::super::aligned::Aligned;
 use super::super::column::Column;
-use super::axes::{Axes, larger, smaller};
+use super::axes::{larger, smaller};
 use super::traverse::Kernel;
-use super::tree::{Levels, W};
+use super::tree::W;
 
 /// The codes of two axes for each of eight boxes or rows.
 pub(super) type Pair = [[u8; 2]; W];
 
 /// Steps between the lowest corner of a node and the highest, at most.
-const STEPS: f32 = 254.0;
+pub(super) const STEPS: f32 = 254.0;
 
 /// Parts of a step that a query is told in.
-const PARTS: f32 = 4.0;
+pub(super) const PARTS: f32 = 4.0;
 
 /// Parts of a step by which a query may be off: a half by rounding to the nearest, a sixteenth by what [`FINEST`]
 /// leaves of errors of rows, and what is rounded while a number is put on a grid.
 const SLACK: f32 = 0.6;
 
 /// A step is at least that many times as long as a row's coordinate can be wrong.
-const FINEST: f32 = 64.0;
+pub(super) const FINEST: f32 = 64.0;
 
 /// The shortest step; its square has all its digits.
-const SHORTEST: f32 = 1e-15;
+pub(super) const SHORTEST: f32 = 1e-15;
 
 /// Half a step, in parts: by which a row's code is rounded at most.
 const HALF: i16 = 2;
@@ -95,10 +94,10 @@ impl<'a> Grid<'a> {
         self.numbers.iter().all(|x| x.is_finite()) && (0.0..=most).contains(&self.parts) && self.unit >= 0.0
     }
 
-    /// Steps from the corner.
+    /// Steps from the corner's coordinate.
     #[inline(always)]
-    pub(super) fn steps(self, axis: usize, x: f32) -> f32 {
-        (x - self.numbers[axis]) * (self.parts / PARTS)
+    pub(super) fn steps(self, corner: f32, x: f32) -> f32 {
+        (x - corner) * (self.parts / PARTS)
     }
 }
 
@@ -178,7 +177,7 @@ impl Placed {
 
 /// The whole number nearest to `x`, whose size is below 2^15.
 #[inline(always)]
-fn nearest(x: f32) -> i16 {
+pub(super) fn nearest(x: f32) -> i16 {
     (x + ROUNDER).to_bits().wrapping_sub(ROUNDER.to_bits()) as i16
 }
 
@@ -200,145 +199,4 @@ pub(super) fn both([one, other]: [i16; 2]) -> i32 {
 pub(super) fn gap(q: i16, apart: i16, lower: u8, upper: u8) -> i32 {
     let (lower, upper) = (PARTS as i32 * i32::from(lower), PARTS as i32 * i32::from(upper));
     ((lower - i32::from(q)).max(i32::from(q) - upper) - i32::from(apart)).max(0)
-}
-
-impl Codes {
-    /// Codes of the leaves that hold these frames, and of the nodes above them: `row` gives the coordinates of a
-    /// frame, which are of that `size` at most.
-    pub(super) fn of<'a>(
-        axes: &Axes,
-        frames: &[[u32; W]],
-        levels: &Levels,
-        size: f32,
-        row: impl Fn(u32) -> &'a [f32],
-    ) -> Self {
-        let dims = axes.dims();
-        if dims > MOST_CODED {
-            return Self { grids: Vec::new().into(), boxes: Vec::new().into(), rows: Vec::new().into() };
-        }
-        let (nodes, width) = (levels.node_count(), grid_width(dims));
-        let mut codes = Coder {
-            dims,
-            shortest: (FINEST * axes.error(size)).max(SHORTEST),
-            grids: Aligned::new(0.0, nodes * width),
-            boxes: Aligned::new(0, nodes * pairs(dims) * BOX_PAIR),
-            rows: Aligned::new(0, frames.len() * pairs(dims) * ROW_PAIR),
-        };
-        let mut below = Boxes::new(frames.len(), dims);
-        let mut rows = vec![0.0; W * W * dims];
-        for level in 0..levels.count() {
-            let mut these = Boxes::new(levels.nodes(level).len(), dims);
-            for (node, place) in levels.nodes(level).enumerate() {
-                let children = node * W..((node + 1) * W).min(levels.below(level));
-                // Rows lie anywhere, so they are looked up once.
-                let leaves = if level == 0 { &frames[children.clone()] } else { &[] };
-                for ((leaf, _, frame), copy) in held(leaves).zip(rows.chunks_exact_mut(dims)) {
-                    copy.copy_from_slice(row(frame));
-                    below.hold(children.start + leaf, copy, copy);
-                }
-                for child in children.clone() {
-                    let (low, high) = below.of(child);
-                    these.hold(node, low, high);
-                }
-                codes.lay_grid(place, these.of(node));
-                for (lane, child) in children.clone().enumerate() {
-                    codes.code_box(place, lane, below.of(child));
-                }
-                for ((leaf, lane, _), row) in held(leaves).zip(rows.chunks_exact(dims)) {
-                    codes.code_row(place, children.start + leaf, lane, row);
-                }
-            }
-            below = these;
-        }
-        Self { grids: codes.grids.into(), boxes: codes.boxes.into(), rows: codes.rows.into() }
-    }
-}
-
-/// Leaf, lane and number of all frames in leaves.
-fn held(leaves: &[[u32; W]]) -> impl Iterator<Item = (usize, usize, u32)> {
-    let lanes = leaves.as_flattened().iter().copied().enumerate();
-    lanes.map(|(at, frame)| (at / W, at % W, frame)).filter(|&(_, _, frame)| frame != u32::MAX)
-}
-
-/// Codes in the making.
-struct Coder {
-    dims: usize,
-    shortest: f32,
-    grids: Aligned<f32>,
-    boxes: Aligned<u8>,
-    rows: Aligned<u8>,
-}
-
-impl Coder {
-    fn lay_grid(&mut self, node: usize, (low, high): (&[f32], &[f32])) {
-        let width = grid_width(self.dims);
-        let numbers = &mut self.grids.as_mut_slice()[node * width..][..width];
-        numbers[..self.dims].copy_from_slice(low);
-        let widest = low.iter().zip(high).map(|(low, high)| high - low).fold(0.0, f32::max);
-        let part = (widest / STEPS).max(self.shortest) / PARTS;
-        (numbers[width - 2], numbers[width - 1]) = (1.0 / part, (part * part).min(f32::MAX));
-    }
-
-    fn code_box(&mut self, node: usize, lane: usize, (low, high): (&[f32], &[f32])) {
-        let (grids, boxes) = (&self.grids, &mut self.boxes);
-        let grid = grid_of(grids.as_slice(), self.dims, node);
-        let boxes: &mut [[u8; BOX_PAIR]] = block_mut(boxes.as_mut_slice(), node, pairs(self.dims));
-        for (axis, (&low, &high)) in low.iter().zip(high).enumerate() {
-            let (lower, upper) = (grid.steps(axis, low), grid.steps(axis, high));
-            let at = 2 * lane + axis % 2;
-            boxes[axis / 2][at] = lower as u8;
-            boxes[axis / 2][at + 2 * W] = upper as u8 + u8::from(f32::from(upper as u8) < upper);
-        }
-    }
-
-    fn code_row(&mut self, node: usize, leaf: usize, lane: usize, row: &[f32]) {
-        let (grids, rows) = (&self.grids, &mut self.rows);
-        let grid = grid_of(grids.as_slice(), self.dims, node);
-        let steps_a_unit = grid.parts / PARTS;
-        let mut codes = [[0_u8; 2]; MOST_CODED / 2];
-        for ((code, &x), &corner) in codes.as_flattened_mut().iter_mut().zip(row).zip(grid.numbers) {
-            *code = nearest((x - corner) * steps_a_unit) as u8;
-        }
-        let rows: &mut [[u8; ROW_PAIR]] = block_mut(rows.as_mut_slice(), leaf, pairs(self.dims));
-        for (pair, code) in rows.iter_mut().zip(codes) {
-            pair.as_chunks_mut::<2>().0[lane] = code;
-        }
-    }
-}
-
-fn grid_of(grids: &[f32], dims: usize, node: usize) -> Grid<'_> {
-    let width = grid_width(dims);
-    Grid::new(&grids[node * width..][..width])
-}
-
-fn block_mut<T, const N: usize>(values: &mut [T], place: usize, lines: usize) -> &mut [[T; N]] {
-    values[place * lines * N..][..lines * N].as_chunks_mut().0
-}
-
-/// Boxes with edges as they are.
-struct Boxes {
-    dims: usize,
-    low: Vec<f32>,
-    high: Vec<f32>,
-}
-
-impl Boxes {
-    /// Boxes that hold nothing.
-    fn new(count: usize, dims: usize) -> Self {
-        let low = vec![f32::INFINITY; count * dims];
-        Self { dims, low, high: vec![f32::NEG_INFINITY; count * dims] }
-    }
-
-    fn of(&self, number: usize) -> (&[f32], &[f32]) {
-        (&self.low[number * self.dims..][..self.dims], &self.high[number * self.dims..][..self.dims])
-    }
-
-    /// Makes a box hold another.
-    fn hold(&mut self, number: usize, low: &[f32], high: &[f32]) {
-        let edges = self.low[number * self.dims..].iter_mut().zip(&mut self.high[number * self.dims..]);
-        for ((here_low, here_high), (&low, &high)) in edges.zip(low.iter().zip(high)) {
-            *here_low = smaller(low, *here_low);
-            *here_high = larger(high, *here_high);
-        }
-    }
 }

@@ -8,15 +8,18 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 
+mod arrange;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 mod axes;
 mod batch;
 mod best;
+mod boxes;
 pub mod brute_force;
 mod build;
 mod check;
 mod codes;
+mod coding;
 mod error;
 mod metric;
 #[cfg(target_arch = "aarch64")]
@@ -30,6 +33,7 @@ mod sse2;
 pub(super) mod stored;
 mod traverse;
 mod tree;
+mod turned;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod twice;
 
@@ -208,7 +212,8 @@ impl<'a, D: Width, M: Metric<D>, B: Best, I: Iterator<Item = (Query<'a>, B)>> Wo
 impl Index {
     /// Indexes the rows of `features` (frames x `dims`) for which `candidates` holds.
     ///
-    /// `tags` holds one word of bits a frame; without it no frame carries any.
+    /// `tags` holds one word of bits a frame; without it no frame carries any. The work is shared among `threads`
+    /// threads (0: all cores); the bits do not depend on it.
     ///
     /// # Errors
     /// When `dims` is 0, an array is not of one row or entry a frame, there are more than `u32::MAX - 1` frames, or
@@ -218,8 +223,9 @@ impl Index {
         dims: usize,
         candidates: &[bool],
         tags: Option<&[u32]>,
+        threads: usize,
     ) -> Result<Self, IndexError> {
-        Self::build_for(Isa::current(), features, dims, candidates, tags)
+        Self::build_for(Isa::current(), features, dims, candidates, tags, threads)
     }
 
     /// As [`Index::build`], for an instruction set other than the process's own.
@@ -232,10 +238,11 @@ impl Index {
         dims: usize,
         candidates: &[bool],
         tags: Option<&[u32]>,
+        threads: usize,
     ) -> Result<Self, IndexError> {
         check_rows(features, dims, candidates, tags)?;
         let kernels = Kernels::of(isa).ok_or(IndexError::Isa { asked: isa })?;
-        let tree = Rows { features, dims, candidates, tags }.tree(kernels);
+        let tree = Rows { features, dims, candidates, tags }.tree(kernels, threads);
         let candidate_count = candidates.iter().filter(|&&candidate| candidate).count();
         Ok(Self { dims, frame_count: candidates.len(), candidate_count, kernels, tree })
     }

@@ -75,7 +75,7 @@ impl Case {
         let features = kind.rows(count, dims, random);
         let candidates: Vec<bool> = (0..count).map(|_| random.below(8) != 0).collect();
         let tags: Vec<u32> = (0..count).map(|_| random.below(8)).collect();
-        let build = |isa| Index::build_for(isa, &features, dims, &candidates, Some(&tags)).unwrap();
+        let build = |isa| Index::build_for(isa, &features, dims, &candidates, Some(&tags), 1).unwrap();
         let indices = Isa::available().map(build).collect();
         Self { dims, features, candidates, tags, indices }
     }
@@ -258,7 +258,7 @@ fn equal_rows_yield_the_lowest_candidate() {
     let mut candidates = vec![true; 100_000];
     candidates[..17].fill(false);
     for isa in Isa::available() {
-        let index = Index::build_for(isa, &vec![0.3; 300_000], 3, &candidates, None).unwrap();
+        let index = Index::build_for(isa, &vec![0.3; 300_000], 3, &candidates, None, 1).unwrap();
         for q in [0.3, 0.1] {
             let hit = index.search(&Query::new(&[q; 3])).unwrap().unwrap();
             assert_eq!(hit.frame, 17);
@@ -302,9 +302,46 @@ fn a_batch_has_the_bits_of_single_queries_whatever_the_thread_count() {
     }
 }
 
+/// All that an index holds, as bits.
+fn bits(index: &Index) -> Vec<Vec<u32>> {
+    let tree = index.tree.view();
+    let floats = |numbers: &[f32]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<u32>>();
+    let turn = tree.axes.turn.iter().chain(&tree.axes.mean);
+    vec![
+        tree.order.to_vec(),
+        turn.flat_map(|x| [x.to_bits() as u32, (x.to_bits() >> 32) as u32]).collect(),
+        tree.frames.as_flattened().to_vec(),
+        tree.tags.as_flattened().to_vec(),
+        tree.lowest.as_flattened().to_vec(),
+        tree.node_tags.as_flattened().to_vec(),
+        floats(tree.rows),
+        tree.boxes.to_vec(),
+        floats(tree.grids),
+        tree.node_codes.iter().chain(tree.leaf_codes).map(|&code| code.into()).collect(),
+    ]
+}
+
+#[test]
+fn an_index_has_the_same_bits_whatever_the_instruction_set_and_the_thread_count() {
+    let mut random = Random(7);
+    for (count, dims) in [(0, 3), (7, 27), (9, 1), (65, 8), (40_000, 27), (20_000, 3), (9000, 130)] {
+        let case = Case::new(Kind::Walk, count, dims, &mut random);
+        let expected = bits(&case.indices[0]);
+        for (isa, alone) in Isa::available().zip(&case.indices) {
+            assert!(bits(alone) == expected, "{count} x {dims}, {isa}");
+            for threads in [0, 2, 3, 7] {
+                let (candidates, tags) = (&case.candidates, Some(&case.tags[..]));
+                let index = Index::build_for(isa, &case.features, dims, candidates, tags, threads).unwrap();
+                assert!(bits(&index) == expected, "{count} x {dims}, {isa}, {threads} threads");
+                index.check(&case.features, candidates, &case.tags).unwrap();
+            }
+        }
+    }
+}
+
 #[test]
 fn a_batch_that_is_stopped_answers_nothing_more() {
-    let index = Index::build(&[1.0, 2.0], 1, &[true; 2], None).unwrap();
+    let index = Index::build(&[1.0, 2.0], 1, &[true; 2], None, 1).unwrap();
     let batch = Batch {
         queries: &[1.0],
         weights: None,
@@ -322,7 +359,7 @@ fn a_batch_that_is_stopped_answers_nothing_more() {
 #[test]
 fn what_cannot_be_indexed_is_refused_in_words() {
     let refusal = |features: &[f32], dims, candidates: &[bool], tags: Option<&[u32]>| {
-        Index::build(features, dims, candidates, tags).unwrap_err().to_string()
+        Index::build(features, dims, candidates, tags, 1).unwrap_err().to_string()
     };
     assert!(refusal(&[], 0, &[], None).contains("0 dimensions"));
     assert!(refusal(&[1.0; 5], 2, &[true; 2], None).contains("features holds 5 elements where 4 are needed"));
@@ -336,14 +373,14 @@ fn what_cannot_be_indexed_is_refused_in_words() {
     features[3] = f32::INFINITY;
     assert!(refusal(&features, 2, &[true; 3], None).contains("feature 1 of frame 1 is inf"));
     assert!(
-        Index::build(&features, 2, &[true, false, true], None).is_ok(),
+        Index::build(&features, 2, &[true, false, true], None, 1).is_ok(),
         "what is no candidate may be anything"
     );
 }
 
 #[test]
 fn what_cannot_be_asked_is_refused_in_words() {
-    let index = Index::build(&[1.0, 2.0], 2, &[true], None).unwrap();
+    let index = Index::build(&[1.0, 2.0], 2, &[true], None, 1).unwrap();
     let refusal = |query: &Query| index.search(query).unwrap_err().to_string();
     assert!(refusal(&Query::new(&[1.0])).contains("query features holds 1 elements where 2 are needed"));
     assert!(refusal(&Query::new(&[1.0, f32::NAN])).contains("feature 1 of query 0 is NaN"));
@@ -374,7 +411,7 @@ fn what_cannot_be_asked_is_refused_in_words() {
 #[test]
 fn an_instruction_set_of_another_machine_is_refused() {
     let other = Isa::ALL.into_iter().find(|isa| !isa.is_available()).unwrap();
-    let error = Index::build_for(other, &[1.0], 1, &[true], None).unwrap_err();
+    let error = Index::build_for(other, &[1.0], 1, &[true], None, 1).unwrap_err();
     assert!(error.to_string().contains(other.name()));
 }
 
@@ -397,7 +434,7 @@ fn a_dimension_of_no_weight_says_nothing() {
     let mut random = Random(6);
     let case = Case::new(Kind::Walk, 3000, 6, &mut random);
     let narrow: Vec<f32> = case.features.chunks_exact(6).flat_map(|row| row[..4].to_vec()).collect();
-    let narrow = Index::build(&narrow, 4, &case.candidates, Some(&case.tags)).unwrap();
+    let narrow = Index::build(&narrow, 4, &case.candidates, Some(&case.tags), 1).unwrap();
     for _ in 0..50 {
         let features = case.query_features(&mut random);
         let pose_only = Query { weights: Some(&[1.0, 1.0, 1.0, 1.0, 0.0, 0.0]), ..Query::new(&features) };
@@ -411,7 +448,7 @@ fn a_dimension_of_no_weight_says_nothing() {
 #[test]
 fn where_nothing_counts_the_lowest_frame_is_found() {
     for isa in Isa::available() {
-        let index = Index::build_for(isa, &[1.0; 19], 1, &[true; 19], None).unwrap();
+        let index = Index::build_for(isa, &[1.0; 19], 1, &[true; 19], None, 1).unwrap();
         let nothing = Query { weights: Some(&[0.0]), ..Query::new(&[5.0]) };
         let mut hits = [Hit::NONE; 25];
         assert_eq!(index.search_top(&nothing, &mut hits), Ok(19));
