@@ -144,7 +144,10 @@ class DatabaseBuilder:
         """
 
     def finish(
-        self, offset: list[float] | None = None, scale: list[float] | None = None, threads: int = 0
+        self,
+        offset: list[float] | NDArray[np.float32] | None = None,
+        scale: list[float] | NDArray[np.float32] | None = None,
+        threads: int = 0,
     ) -> Database:
         """The database, scaled by itself or as given; the builder is then used up.
 
