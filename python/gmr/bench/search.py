@@ -115,7 +115,7 @@ def build(frame_count: int) -> Iterator[Contest]:
             work=f"index of {len(rows):,} rows, built",
             unit="M rows/s",
             amount=len(rows) / 1e6,
-            ours=lambda rows=rows: _core.Index(rows),  # type: ignore[misc]
+            ours=lambda rows=rows: _core.Index(rows, threads=1),  # type: ignore[misc]
             peers={label("scipy"): lambda rows=rows: _tree(rows)} if "scipy" in peers else {},  # type: ignore[misc]
             absent=peers.absent,
         )
