@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import gmr
+from gmr.cli import evaluate
 from gmr.cli.commands import gmr as command
 from gmr.cli.common import finished
 from gmr.pruning.manifest import cost_of_files
@@ -92,6 +93,27 @@ def test_what_could_not_be_done_is_told_to_machines_too(
     assert "tuned" not in told
     assert told["pruned"]["identical"] is True
     assert "--tune came to nothing" in said.err
+
+
+def test_an_interrupt_after_the_trials_costs_neither_report_nor_what_was_done(
+    folder: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(evaluate, "tune_evaluation", interrupted)
+    report, archive = tmp_path / "report.html", tmp_path / "archive"
+    write_walkers(archive, TWIN)
+    asked = ("--prune", "lossless", "--prune-out", tmp_path / "smaller", "--tune", "--complete-from", archive)
+    assert run(folder, *SMALL, *asked, "-o", report, "--quiet") == 130
+    said = capsys.readouterr()
+    assert f"Report: {report}" in said.out
+    assert 'id="pruning"' in report.read_text()
+    assert (tmp_path / "smaller" / "manifest.json").exists()
+    assert said.err.splitlines() == [
+        "gmr: --tune came to nothing, all else is done: it was interrupted",
+        "gmr: --complete-from came to nothing, all else is done: what came before it was interrupted",
+    ]
 
 
 def test_json_has_the_curve_and_the_importance(

@@ -1,9 +1,8 @@
-"""What ``gmr evaluate`` does with a finished evaluation; where one of these things fails, the rest stands."""
+"""What ``gmr evaluate`` does with a finished evaluation; what fails or is interrupted costs nothing else."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["Afterwards"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Afterwards:
     """What was added to an evaluation, and what could not be.
 
@@ -29,20 +28,27 @@ class Afterwards:
         phases: told of progress.
         added: by its key in the JSON object.
         failed: option -> why it came to nothing.
+        interrupted: whether one was interrupted; then none is begun any more.
     """
 
     phases: Phases
     added: dict[str, Added] = field(default_factory=dict)
     failed: dict[str, str] = field(default_factory=dict)
+    interrupted: bool = False
 
-    @contextmanager
-    def trying(self, option: str) -> Iterator[None]:
-        """Do what an option asks for; an error of it is kept, to be told when the report is written."""
+    def add(self, key: str, option: str, work: Callable[[], Added]) -> None:
+        """Do what an option asks for; why it could not be is kept, to be told when the report is written."""
+        if self.interrupted:
+            self.failed[option] = "what came before it was interrupted"
+            return
         try:
             with trouble_with_files(self.phases):
-                yield
+                self.added[key] = work()
         except GmrError as error:
             self.failed[option] = str(error)
+        except KeyboardInterrupt:
+            self.interrupted = True
+            self.failed[option] = "it was interrupted"
 
     def told(self) -> Iterator[str]:
         """A sentence for each option that came to nothing."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
@@ -10,6 +11,7 @@ import click
 
 from gmr.cli.afterwards import Afterwards
 from gmr.cli.choosing import (
+    Completed,
     Completing,
     check_completing,
     complete_folder,
@@ -18,7 +20,7 @@ from gmr.cli.choosing import (
     read_dataset,
 )
 from gmr.cli.cluster_options import check_workers, cluster_options
-from gmr.cli.common import say
+from gmr.cli.common import INTERRUPTED, say
 from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.evaluation_results import as_object, in_words
 from gmr.cli.outcome import at_place, left_out, trouble_with_files
@@ -59,7 +61,8 @@ Examples:
 
 \b
 Exit codes: 0 all files were evaluated, 1 some or all could not be (they are named), or --prune, --tune
-or --complete-from came to nothing (the report is written all the same), 2 wrong usage, 130 interrupted.
+or --complete-from came to nothing (the report is written all the same), 2 wrong usage, 130 interrupted
+(the report is written if the trials were done).
 """
 
 
@@ -185,33 +188,33 @@ def evaluate(
             **reading,
         )
         later = Afterwards(phases)
-        refused, earlier = False, list[str]()
         if prune is not None:
             assert isinstance(found, gmr.Evaluation)
-            with later.trying("--prune"):
-                later.added["pruned"] = prune_folder(
-                    found, folders[0], prune, prune_out, phases, workers=workers, cluster=cluster, **reading
-                )
+            asked = partial(prune_folder, found, folders[0], prune, prune_out, phases, **reading)
+            later.add("pruned", "--prune", partial(asked, workers=workers, cluster=cluster))
         if tune:
             assert isinstance(found, gmr.Evaluation)
-            with later.trying("--tune"):
-                later.added["tuned"] = tune_evaluation(found, threads=threads, progress=phases.tell)
+            later.add(
+                "tuned", "--tune", partial(tune_evaluation, found, threads=threads, progress=phases.tell)
+            )
         if completing is not None:
             assert isinstance(found, gmr.Evaluation)
             assert read is not None
-            with later.trying("--complete-from"):
-                later.added["completed"] = completed = complete_folder(
-                    found, read.motions, completing, phases, report=not no_report, **reading
-                )
-                refused = bool(completed.found.refused)
-                earlier = list(earlier_clips(completed.found, completed.folder))
+            given = partial(complete_folder, found, read.motions, completing, phases, **reading)
+            later.add("completed", "--complete-from", partial(given, report=not no_report))
         sections = [each.section() for each in later.added.values()]
         written = _write(found, None if no_report else out, tables, figures, phases, sections)
     click.echo(as_object(found, written, later) if as_json else in_words(found, written))
     for each in later.added.values() if not as_json else ():
         click.echo(each.words())
+    chosen = later.added.get("completed")
+    completed = [chosen] if isinstance(chosen, Completed) else []
+    earlier = [sentence for each in completed for sentence in earlier_clips(each.found, each.folder)]
     for sentence in (*left_out(found.failed), *earlier, *later.told()):
         say(sentence)
+    if later.interrupted:
+        return INTERRUPTED
+    refused = any(each.found.refused for each in completed)
     return 1 if found.failed or refused or later.failed else 0
 
 
