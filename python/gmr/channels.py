@@ -7,7 +7,7 @@ does).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -160,6 +160,21 @@ class ChannelLayout:
                 if name.lower() in POSITIONS:
                     columns[row, POSITIONS[name.lower()]] = self.starts[joint] + k
         return read_only(columns)
+
+    def with_positions(self, joints: Iterable[int]) -> ChannelLayout:
+        """The layout with all three position channels in these joints."""
+        moving = set(joints)
+        if not moving:
+            return self
+        return replace(
+            self,
+            names=tuple(
+                (*_STANDARD_POSITIONS, *(name for name in channels if name.lower() in ROTATIONS))
+                if joint in moving
+                else channels
+                for joint, channels in enumerate(self.names)
+            ),
+        )
 
     def completed(self) -> ChannelLayout:
         """The layout with three rotations in each joint whose channels cannot write every rotation it may

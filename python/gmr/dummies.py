@@ -185,17 +185,14 @@ def restore_dummies(motion: Motion, *, threads: int | None = None) -> Motion:
             by += [above] * len(below)
     _turn(rotations, turned, by, threads, back=True)
     kept = np.setdiff1d(np.arange(skeleton.joint_count), record.dummies)
-    # A joint that is at rest need not be among those that are translated now; a dummy has no length at all.
-    rest = np.where(
-        np.isin(record.translated, record.dummies)[:, None], 0.0, skeleton.offsets[list(record.translated)]
-    )
+    moving = kept[pose.translated]
+    # A joint that is at rest need not be among those that are translated now, and one that is translated now
+    # need not have been then; a dummy has no length at all.
+    translated = np.union1d(np.array(record.translated, np.intp), moving).astype(np.int32)
+    rest = np.where(np.isin(translated, record.dummies)[:, None], 0.0, skeleton.offsets[translated])
     translations = np.tile(rest, (motion.frame_count, 1, 1))
-    columns = {joint: k for k, joint in enumerate(record.translated)}
-    held = [columns[joint] for joint in kept[pose.translated].tolist()]
-    translations[:, held] = pose.translations
-    source = Pose(
-        read_only(rotations), np.array(record.translated, np.int32), read_only(translations), record.layout
-    )
+    translations[:, np.searchsorted(translated, moving)] = pose.translations
+    source = Pose(read_only(rotations), translated, read_only(translations), record.layout)
     return replace(motion, skeleton=skeleton, source=source, dropped=record.before)
 
 

@@ -18,7 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr import _core
+from gmr.apart import turned_apart
 from gmr.arrays import read_only
+from gmr.configurations import arranged, configuration
 from gmr.errors import SkeletonError
 from gmr.frames import Pose, Rows
 from gmr.skeleton import Skeleton
@@ -28,10 +30,8 @@ if TYPE_CHECKING:
     from gmr.motion import Motion
 
 __all__ = [
-    "arranged",
     "carried",
     "changed_at_home",
-    "configuration",
     "configured",
     "home",
     "join",
@@ -126,50 +126,30 @@ def join(motion: Motion, root: Joint, *, threads: int | None = None) -> Motion:
     return _moved(motion, lambda forest: forest.join(index, names), threads)
 
 
-def home(motion: Motion, *, threads: int | None = None) -> Motion:
-    """The same motion in the configuration that it had before any root was moved.
+def home(motion: Motion, *, threads: int | None = None, looks_for_turns: bool = True) -> Motion:
+    """The same motion in the configuration that it had before any root was moved; see :func:`carried`.
 
     Rows that were read come back as they were.
     """
     if motion.skeleton.home is None:
         return motion
-    return carried(motion, motion.skeleton.home, threads=threads)
+    return carried(motion, motion.skeleton.home, threads=threads, looks_for_turns=looks_for_turns)
 
 
-def arranged(skeleton: Skeleton, forest: _core.Forest) -> Skeleton:
-    """The skeleton in another configuration."""
-    at_home = skeleton if skeleton.home is None else skeleton.home
-    topology = forest.topology
-    parents, bones = np.asarray(topology.parents), np.asarray(forest.bones)
-    if np.array_equal(parents, at_home.parents):
-        return at_home
-    is_turned = bones != np.arange(len(bones))
-    offsets = np.where(is_turned[:, None], -at_home.offsets[bones], at_home.offsets)
-    offsets[is_turned & (parents < 0)] = 0
-    return Skeleton(
-        at_home.names, parents, read_only(offsets), topology.slots, topology.slot_count, at_home.ends, at_home
-    )
+def carried(
+    motion: Motion, skeleton: Skeleton, *, threads: int | None = None, looks_for_turns: bool = True
+) -> Motion:
+    """The same motion on its skeleton in another configuration, ``skeleton``.
 
-
-def configuration(skeleton: Skeleton, cut: Iterable[int], roots: Iterable[int]) -> Skeleton:
-    """The configuration in which the bones that end at home in the joints ``cut`` are cut.
-
-    Each tree hangs on the one of ``roots`` that is in it; one without hangs on its joint nearest to home.
+    Args:
+        motion: any, in any configuration.
+        skeleton: the configuration. Where the motion was edited so that bones which turn alike at home do
+            not, the answer is on a skeleton that gives them rotations of their own.
+        threads: 0: all cores; None: all cores for long motions. The bits do not depend on it.
+        looks_for_turns: False: bones that turn alike at home do so in this motion, or need not any more.
     """
-    at_home = skeleton if skeleton.home is None else skeleton.home
-    parents = at_home.parents.copy()
-    parents[list(cut)] = -1
-    for root in roots:
-        below, here = -1, root
-        while here >= 0:
-            above = int(parents[here])
-            parents[here] = below
-            below, here = here, above
-    return arranged(at_home, _core.Forest(at_home.topology, parents))
-
-
-def carried(motion: Motion, skeleton: Skeleton, *, threads: int | None = None) -> Motion:
-    """The same motion on its skeleton in another configuration, ``skeleton``."""
+    if looks_for_turns and motion.skeleton != skeleton:
+        motion, skeleton = _with_turns_of_their_own(motion, skeleton)
     source = motion.source
     total = threads_for(motion.frame_count * skeleton.joint_count, threads)
     if motion.skeleton == skeleton:
@@ -246,6 +226,15 @@ def _moved(motion: Motion, change: Callable[[_core.Forest], _core.Forest], threa
     return carried(motion, arranged(motion.skeleton, forest), threads=threads)
 
 
+def _with_turns_of_their_own(motion: Motion, skeleton: Skeleton) -> tuple[Motion, Skeleton]:
+    """The motion as :func:`gmr.apart.turned_apart` has it, and the configuration on its skeleton."""
+    apart = turned_apart(motion)
+    if apart is motion:
+        return motion, skeleton
+    at_home = cast(Skeleton, apart.skeleton.home)
+    return apart, arranged(at_home, _core.Forest(at_home.topology, skeleton.parents))
+
+
 def _configured(
     motion: Motion,
     skeleton: Skeleton,
@@ -277,19 +266,16 @@ def _without_still_bones(
     A joint that has position channels at home stays translated all the same.
     """
     bones = np.asarray(skeleton.forest.bones)[translated]
-    was_cut = np.asarray(motion.skeleton.links)[bones] >= 0
-    mended = np.flatnonzero(was_cut & (skeleton.parents[translated] >= 0)).tolist()
-    if not mended or not len(translations):
+    mended = (np.asarray(motion.skeleton.links)[bones] >= 0) & (skeleton.parents[translated] >= 0)
+    if not mended.any() or not len(translations):
         return translated, translations
-    reach = max(np.abs(translations).max(), np.abs(skeleton.offsets).max())
+    low, high = translations.min(axis=0), translations.max(axis=0)
+    offsets = skeleton.offsets[translated]
+    near = _STILL * max(-low.min(), high.max(), np.abs(skeleton.offsets).max())
+    as_offset = mended[:, None] & (high - offsets <= near) & (offsets - low <= near)
     layout = motion.layout
-    moving = set() if layout is None else set(layout.translated.tolist())
-    still = []
-    for k in mended:
-        offset = skeleton.offsets[translated[k]]
-        as_offset = np.abs(translations[:, k] - offset).max(axis=0) <= _STILL * reach
-        translations[:, k, as_offset] = offset[as_offset]
-        if as_offset.all() and int(bones[k]) not in moving:
-            still.append(k)
-    kept = np.setdiff1d(np.arange(len(translated)), still)
-    return translated[kept], translations.take(kept, axis=1) if still else translations
+    moving = np.zeros(len(translated), bool) if layout is None else np.isin(bones, layout.translated)
+    still = as_offset.all(axis=1) & ~moving
+    for k in np.flatnonzero(as_offset.any(axis=1) & ~still).tolist():
+        translations[:, k, as_offset[k]] = offsets[k, as_offset[k]]
+    return translated[~still], translations[:, ~still] if still.any() else translations

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.arrays import read_only
+from gmr.configurations import configuration
 from gmr.errors import SkeletonError
-from gmr.forest import carried, configuration, configured
+from gmr.forest import carried, configured
 from gmr.frames import Pose
 from gmr.skeleton import Skeleton
 

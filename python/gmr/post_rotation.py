@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from gmr.arrays import read_only
 from gmr.channels import ChannelLayout, turning_freely
+from gmr.configurations import configuration
 from gmr.dummies import restore_dummies
-from gmr.forest import carried, configuration
+from gmr.forest import carried
 from gmr.frames import Pose, Rows
 from gmr.quaternions import conjugate, multiply
 from gmr.skeleton import End, Skeleton
@@ -36,7 +37,8 @@ _STILL: Final = 1e-12
 def to_post_rotation(motion: Motion) -> Motion:
     """The motion as rows of channels can say it; every joint keeps its place.
 
-    Roots that were split off are joined; a tree that was turned over stays so, with the root that it has. A
+    Roots that were split off are joined; a joint whose bone is not what it was then gets position channels.
+    A tree that was turned over stays so, with the root that it has. A
     dropped dummy stays away where its rotation can go elsewhere: it was its parent's only child, or never
     turned. The others come back. Where siblings still turn independently, new dummies named
     "<parent>_to_<child>" are brought in.
@@ -51,9 +53,23 @@ def to_post_rotation(motion: Motion) -> Motion:
         return motion
     pose, skeleton = motion.pose, motion.skeleton
     layout = pose.layout or ChannelLayout.standard(skeleton, pose.translated)
-    if layout.fits(skeleton):
-        return motion if pose.layout else replace(motion, source=replace(pose, layout=layout))
-    return _in_shared_slots(motion, pose)
+    moving = _without_place(motion, layout)
+    layout = layout.with_positions(moving)
+    if layout.fits(skeleton) and not skeleton.ends[moving].any():
+        return motion if layout == pose.layout else replace(motion, source=replace(pose, layout=layout))
+    return _in_shared_slots(motion, pose, moving)
+
+
+def _without_place(motion: Motion, layout: ChannelLayout) -> list[int]:
+    """The joints that move in a direction for which they have no channel."""
+    pose, offsets = motion.pose, motion.skeleton.offsets
+    columns = dict(zip(layout.translated.tolist(), layout.translation_columns, strict=True))
+    found = []
+    for k, joint in enumerate(pose.translated.tolist()):
+        lacking = columns[joint] < 0 if joint in columns else np.ones(3, bool)
+        if (pose.translations[:, k, lacking] != offsets[joint, lacking]).any():
+            found.append(joint)
+    return found
 
 
 def at_home(motion: Motion) -> Motion:
@@ -72,8 +88,14 @@ def at_home(motion: Motion) -> Motion:
     return replace(motion, skeleton=turned, source=replace(motion.pose, layout=None, rows=None), dropped=None)
 
 
-def _in_shared_slots(motion: Motion, pose: Pose) -> Motion:
-    """The motion with siblings sharing one slot, where need be through new dummies, and a layout for it."""
+def _in_shared_slots(motion: Motion, pose: Pose, moving: Sequence[int]) -> Motion:
+    """The motion with siblings sharing one slot, where need be through new dummies, and a layout for it.
+
+    End sites that are ``moving`` become joints like any other.
+    """
+    ends = motion.skeleton.ends.copy()
+    ends[list(moving)] = int(End.JOINT)
+    motion = replace(motion, skeleton=replace(motion.skeleton, ends=ends))
     skeleton = motion.skeleton
     names, parents = list(skeleton.names), skeleton.parents.tolist()
     turns: dict[int, NDArray[np.float64]] = {}

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from gmr import _core
 from gmr.arrays import read_only
 from gmr.errors import GmrError
+from gmr.forest import changed_at_home
 from gmr.frames import Pose
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ def nominal_fps(motion: Motion) -> float:
 
 
 def resample(motion: Motion, fps: float) -> Motion:
-    """The motion at ``fps`` frames a second: rotations by slerp, translations linearly.
+    """The motion at ``fps`` frames a second: rotations by slerp, translations linearly, both as at home.
 
     The first frame stays. The last one stays where it falls on a new frame; else the motion ends at the last
     new frame before it, for nothing is known after it. Where the old rate is a multiple of the new one,
@@ -72,8 +73,15 @@ def resample(motion: Motion, fps: float) -> Motion:
         )
     count = math.floor(last / step * (1 + 1e-12)) + 1 if motion.frame_count else 0
     times = np.minimum(np.arange(count) * step, last)
-    dropped = None if motion.dropped is None else motion.dropped.without_rows()
-    return replace(motion, source=_interpolated(motion.pose, times), frame_time=1 / fps, dropped=dropped)
+
+    def between(one: Motion) -> Motion:
+        dropped = None if one.dropped is None else one.dropped.without_rows()
+        return replace(one, source=_interpolated(one.pose, times), frame_time=1 / fps, dropped=dropped)
+
+    if motion.skeleton.home is None:
+        return between(motion)
+    # Between two frames each configuration would have rotations of its own; those of home are the motion's.
+    return changed_at_home(motion, between, np.arange(motion.skeleton.joint_count))
 
 
 def _step(motion: Motion, fps: float) -> float:

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.arrays import read_only
+from gmr.configurations import configuration
 from gmr.errors import GmrError, SkeletonError
-from gmr.forest import configuration, home
+from gmr.forest import home
 from gmr.frames import Pose
 from gmr.listing import quoted
 from gmr.quaternions import conjugate, rotated

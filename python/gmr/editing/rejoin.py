@@ -117,7 +117,8 @@ def rejoin(
         SkeletonError: the two are not of the same skeleton, or two limbs share a bone, or a bone of a limb
             cannot turn by itself.
     """
-    joined, kept = home(loose), home(before)
+    # The bones of limbs are bent anew, so a turn of their ends need not be kept here.
+    joined, kept = home(loose, looks_for_turns=False), home(before)
     _check_alike(joined, kept)
     ends = np.flatnonzero(loose.skeleton.links >= 0).tolist()
     ends = [end for end in ends if before.skeleton.links[end] < 0]

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from gmr import _core
 from gmr.arrays import read_only
 from gmr.channels import ChannelLayout
+from gmr.configurations import arranged
 from gmr.errors import FormatError, GmrError
-from gmr.forest import arranged
 from gmr.formats.gmr_content import check, off_length
 from gmr.formats.numerals import number
 from gmr.formats.safetensors import Container, read_container

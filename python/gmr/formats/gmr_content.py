@@ -15,9 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr import _core
+from gmr.apart import turned_apart
 from gmr.arrays import read_only
+from gmr.configurations import arranged
 from gmr.errors import FormatError
-from gmr.forest import arranged
 from gmr.formats.finite import check_offsets, check_rows, first_not_finite, unsayable
 from gmr.frames import Pose, Rows
 from gmr.motion import Motion
@@ -36,8 +37,9 @@ def kept(motion: Motion) -> Motion:
 
     Returns:
         At home with rows that have a column, those rows; else a pose, whose layout fits or is None, with
-        rotations for just the slots that it takes.
+        rotations for just the slots that it takes. Bones that turn apart have turns of their own.
     """
+    motion = turned_apart(motion)
     skeleton, source = motion.skeleton, motion.source
     is_rows = isinstance(source, Rows) and skeleton.home is None
     if is_rows and (source.numbers[0].shape[1] or not len(source)):

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr import _core
-from gmr.forest import arranged
+from gmr.configurations import arranged
 from gmr.formats.text import named
 from gmr.skeleton import Skeleton
 
