@@ -95,6 +95,26 @@ def test_what_could_not_be_done_is_told_to_machines_too(
     assert "--tune came to nothing" in said.err
 
 
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("evaluate", "--prune", "30%"),
+        ("evaluate", "--prune", "30%", "--prune-out", "a/smaller"),
+        ("evaluate", "--complete-from", "../archive"),
+        ("complete",),
+    ],
+)
+def test_clips_are_not_written_into_the_dataset_that_they_come_from(
+    folder: Path, options: tuple[str, ...], capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_walkers(folder.parent / "archive", TWIN)
+    before = sorted(folder.rglob("*"))
+    monkeypatch.chdir(folder)
+    assert finished(command, [options[0], ".", *options[1:], "--quiet"]) == 2
+    assert "lies in ., and would be read as a part of it the next time; give --" in capsys.readouterr().err
+    assert sorted(folder.rglob("*")) == before
+
+
 def test_an_interrupt_after_the_trials_costs_neither_report_nor_what_was_done(
     folder: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:

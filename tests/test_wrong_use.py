@@ -106,6 +106,30 @@ def test_as_many_rows_as_there_are_can_be_asked_for(k: int) -> None:
         database.search(database.features[:2], k=k)
 
 
+def test_a_search_says_what_it_can_be_asked(motion: typed.Motion) -> None:
+    database = Database.build([gmr.read(walker_bvh(Arc(3.0, 1.0)).encode())])
+    queries = database.features[database.candidates][:5]
+    pose_only = {"trajectory position": 0.0, "trajectory facing": 0.0}
+    by_name, by_number = (
+        database.search(queries, 3, weights=weights)
+        for weights in (pose_only, database.schema.spread(pose_only))
+    )
+    np.testing.assert_array_equal(by_name, by_number)
+    parts = database.costs_by_group(queries, by_name[1], weights=pose_only)
+    assert not parts["trajectory facing"].any()
+    rows = database.search(queries, 3, exclude=(10, 50))[1]
+    np.testing.assert_array_equal(rows, database.search(queries, 3, exclude=[(10, 50)] * 5)[1])
+    assert not ((rows >= 10) & (rows < 50)).any()
+    with pytest.raises(gmr.GmrError, match="no feature group is called 'facing'"):
+        database.search(queries, weights={"facing": 1.0})
+    for wrong in ((1, 2, 3), [(1, 2)] * 4):
+        with pytest.raises(ValueError, match=r"give the first and one past the last row, \(2,\) for all"):
+            database.search(queries, exclude=wrong)
+    for tags in (1 << 33, -1, 0.5):
+        with pytest.raises(ValueError, match="tags must be whole numbers, bits from 0 to 2"):
+            database.search(queries, tags=tags)
+
+
 def test_a_file_that_takes_a_part_at_a_time_gets_all(motion: typed.Motion) -> None:
     class Sipping(io.RawIOBase):
         held = b""

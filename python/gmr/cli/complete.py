@@ -20,7 +20,7 @@ from gmr.cli.choosing import (
 )
 from gmr.cli.common import say
 from gmr.cli.evaluation_options import evaluation_options
-from gmr.cli.outcome import at_place, left_out, trouble_with_files
+from gmr.cli.outcome import at_place, left_out, refuse_inside, trouble_with_files
 from gmr.cli.progress import Phases
 from gmr.cli.weights import weight_option
 
@@ -124,6 +124,7 @@ def complete(
         "threads": threads,
         "schema": schema,
     }
+    refuse_inside(out, folder, "--out")
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):
         with at_place(out):

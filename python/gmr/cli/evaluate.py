@@ -23,7 +23,7 @@ from gmr.cli.cluster_options import check_workers, cluster_options
 from gmr.cli.common import INTERRUPTED, say
 from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.evaluation_results import as_object, in_words
-from gmr.cli.outcome import at_place, left_out, trouble_with_files
+from gmr.cli.outcome import at_place, left_out, refuse_inside, trouble_with_files
 from gmr.cli.progress import Phases
 from gmr.cli.pruning import check_pruning, prune_folder, pruning_options
 from gmr.cli.scenarios import check_scenarios, scenario_options
@@ -164,8 +164,10 @@ def evaluate(
     with phases, trouble_with_files(phases):
         _check_places(None if no_report else out, tables, figures, phases)
         if prune is not None:
+            refuse_inside(prune_out, folders[0], "--prune-out")
             check_pruning(prune_out, phases)
         if completing is not None:
+            refuse_inside(completing.out, folders[0], "--complete-out")
             check_completing(completing, phases)
         reading: dict[str, Any] = {"threads": threads, "names": names, "unit": unit}
         # Read once: a completion needs the clips themselves too.

@@ -6,11 +6,13 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
+import click
+
 from gmr.cli.progress import Phases
 from gmr.errors import GmrError
 from gmr.listing import listed
 
-__all__ = ["at_place", "left_out", "trouble_with_files"]
+__all__ = ["at_place", "left_out", "refuse_inside", "trouble_with_files"]
 
 
 def left_out(failed: Mapping[str, str]) -> Iterator[str]:
@@ -21,6 +23,15 @@ def left_out(failed: Mapping[str, str]) -> Iterator[str]:
     for why, alike in files.items():
         named = len(alike) == 1 and alike[0] in why
         yield f"left out {why}" if named else f"left out {listed(alike, 5)}: {why}"
+
+
+def refuse_inside(out: Path, dataset: Path, option: str) -> None:
+    """Refuses a folder for clips that is part of the dataset which they come from."""
+    if dataset.resolve() in out.resolve().parents:
+        raise click.UsageError(
+            f"{out} lies in {dataset}, and would be read as a part of it the next time; give {option} a place "
+            "elsewhere."
+        )
 
 
 @contextmanager

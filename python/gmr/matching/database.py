@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from os import PathLike
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,6 +30,9 @@ from gmr.skeleton import Skeleton
 from gmr.threads import thread_count
 
 __all__ = ["Database"]
+
+Weights: TypeAlias = ArrayLike | Mapping[str, float]
+"""Of each dimension, of each of each query, or of groups of features by their names."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -156,7 +160,7 @@ class Database(DatabaseRows):
         k: int = 1,
         *,
         tags: ArrayLike = 0,
-        weights: ArrayLike | None = None,
+        weights: Weights | None = None,
         exclude: ArrayLike | None = None,
         max_cost: float = np.inf,
         threads: int = 0,
@@ -166,10 +170,10 @@ class Database(DatabaseRows):
         Args:
             queries: (Q, D), or one of (D,), scaled as :attr:`features` are.
             k: how many.
-            tags: bits that a frame must all carry: one number for all queries, or (Q,).
-            weights: what squared differences are multiplied by, 0 or more: (D,) for all queries, or (Q, D).
-                Those of weight 0 are not looked at. :meth:`gmr.matching.Schema.spread` makes them of groups.
-            exclude: (Q, 2) for each query the first and one past the last row that is no candidate.
+            tags: bits that a frame must all carry: one number for all queries, or (Q,); 32 bits.
+            weights: what squared differences are multiplied by, 0 or more: by the names of groups (those left
+                out count as ever), (D,) for all queries, or (Q, D). Those of weight 0 are not looked at.
+            exclude: the first and one past the last row that is no candidate: (2,) for all, or (Q, 2).
             max_cost: only frames that cost less are found.
             threads: 0 means all cores; the answer is the same for every number.
 
@@ -178,25 +182,32 @@ class Database(DatabaseRows):
             :attr:`clips` and :attr:`frames` translate. Where there are fewer candidates: inf and -1.
 
         Raises:
+            DatasetError: no feature group is called as a weight is.
             ValueError: a query has another number of features, or one that is not finite; a weight is below 0
-                or not finite; or ``k`` is below 0 or above N.
+                or not finite; tags or a range are none; or ``k`` is below 0 or above N.
         """
         if not 0 <= k <= len(self):
             raise ValueError(
                 f"{k} nearest rows cannot be found among {len(self)}; give a k from 0 to {len(self)}"
             )
+        asked = _rows(queries, "queries")
         return self.core.index.search(
-            _rows(queries, "queries"),
+            asked,
             k,
-            np.atleast_1d(np.asarray(tags, np.uint32)),
-            None if exclude is None else np.ascontiguousarray(exclude, np.uint32),
+            _whole(tags, "tags", "bits from 0 to 2^32 - 1").reshape(-1),
+            None if exclude is None else _ranges(exclude, len(asked)),
             max_cost,
             thread_count(threads),
-            None if weights is None else _rows(weights, "weights"),
+            None if weights is None else self._weights(weights),
         )
 
+    def _weights(self, weights: Weights) -> NDArray[np.float32]:
+        """(1, D) or (Q, D) as they are, or of groups by their names."""
+        given = self.schema.spread(weights) if isinstance(weights, Mapping) else weights
+        return _rows(given, "weights")
+
     def costs_by_group(
-        self, queries: ArrayLike, rows: ArrayLike, *, weights: ArrayLike | None = None
+        self, queries: ArrayLike, rows: ArrayLike, *, weights: Weights | None = None
     ) -> dict[str, NDArray[np.float32]]:
         """What rows cost queries, feature group by feature group.
 
@@ -214,7 +225,7 @@ class Database(DatabaseRows):
         """
         given = np.atleast_2d(np.asarray(rows, np.int64))
         parts = self.core.costs_by_group(
-            _rows(queries, "queries"), given, None if weights is None else _rows(weights, "weights")
+            _rows(queries, "queries"), given, None if weights is None else self._weights(weights)
         )
         return {group.name: parts[..., number] for number, group in enumerate(self.schema.groups)}
 
@@ -260,6 +271,26 @@ def _notes(seen: Survey, schema: Schema, core: _core.Database) -> tuple[str, ...
         for name in constant
     ]
     return (*seen.notes, *scaled)
+
+
+def _ranges(exclude: ArrayLike, count: int) -> NDArray[np.uint32]:
+    """(Q, 2) rows from which no answer is wanted."""
+    found = _whole(exclude, "exclude", "rows of the database")
+    if found.shape not in ((2,), (count, 2)):
+        raise ValueError(
+            f"exclude has the shape {found.shape}; give the first and one past the last row, (2,) for all "
+            f"queries or ({count}, 2)"
+        )
+    return np.ascontiguousarray(np.broadcast_to(found, (count, 2)))
+
+
+def _whole(values: ArrayLike, what: str, wanted: str) -> NDArray[np.uint32]:
+    """Whole numbers that fit 32 bits."""
+    numbers = np.asarray(values)
+    most = np.iinfo(np.uint32).max
+    if numbers.dtype.kind not in "iu" or (numbers.size and not 0 <= numbers.min() <= numbers.max() <= most):
+        raise ValueError(f"{what} must be whole numbers, {wanted}; they are {values!r}")
+    return numbers.astype(np.uint32)
 
 
 def _rows(values: ArrayLike, what: str) -> NDArray[np.float32]:

@@ -54,7 +54,8 @@ def _copies(motions: Mapping[str, Motion]) -> Iterator[str]:
         clips = "1 clip holds" if len(copies) == 1 else f"{len(copies)} clips hold"
         yield (
             f"{clips} the same motion as another ('{name}' as '{first}'"
-            f"{f' and {len(copies) - 1} more' if len(copies) > 1 else ''}): seconds that add no movement."
+            f"{f' and {len(copies) - 1} more' if len(copies) > 1 else ''}): seconds that add no movement. "
+            "Remove the copies: the character jumps from one to the other as if they were different clips."
         )
 
 
