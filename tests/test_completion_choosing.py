@@ -387,6 +387,8 @@ def test_a_place_for_the_clips_that_cannot_be_is_found_before_the_work(
 
     (tmp_path / "file").write_text("")
     place = tmp_path / "file" / "completed"
+    takes = tmp_path / "takes"
+    takes.mkdir()
     completing = ["--complete-from", str(tmp_path), "--complete-out", str(place)]
-    assert finished(command, ["evaluate", str(tmp_path), *completing, "-q", "--no-report"]) == 1
+    assert finished(command, ["evaluate", str(takes), *completing, "-q", "--no-report"]) == 1
     assert "Not a directory (while looking where to write)" in capsys.readouterr().err

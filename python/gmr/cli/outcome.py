@@ -29,8 +29,8 @@ def refuse_inside(out: Path, dataset: Path, option: str) -> None:
     """Refuses a folder for clips that is part of the dataset which they come from."""
     if dataset.resolve() in out.resolve().parents:
         raise click.UsageError(
-            f"{out} lies in {dataset}, and would be read as a part of it the next time; give {option} a place "
-            "elsewhere."
+            f"{out} lies in {dataset}, and would be read as a part of it the next time; "
+            f"give {option} a place elsewhere."
         )
 
 
