@@ -207,6 +207,25 @@ def test_a_folder_without_motions_is_named(tmp_path: Path, capsys: Captured) -> 
     assert "no motion in this folder" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    "args", [("info", "{folder}"), ("convert", "{folder}", "{folder}/out", "--to", "gmr")]
+)
+def test_recordings_of_markers_in_a_folder_are_said_to_be_left_out(
+    args: tuple[str, ...], walk_path: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    recording = tmp_path / "hop.c3d"
+    recording.write_bytes(b"\x02P")
+    line = [arg.format(folder=tmp_path) for arg in args]
+    why = (
+        f"hop.c3d is left out: it holds markers, not a motion; make one of it first: gmr convert {recording} "
+    )
+    assert run(*line) == 1
+    assert f"(.bvh, .amc, .asf, .gmr, .gmrb, .glb, .gltf); {why}" in capsys.readouterr().err
+    shutil.copy(walk_path, tmp_path)
+    assert run(*line) == 0
+    assert f"gmr: {tmp_path}: {why}{tmp_path / 'hop.gmr'}\n" in capsys.readouterr().err
+
+
 def test_a_disk_that_fills_up_leaves_the_old_file(walk_path: Path, tmp_path: Path) -> None:
     out = tmp_path / "out.bvh"
     out.write_bytes(b"what was there")

@@ -120,6 +120,15 @@ def test_a_broken_file_of_a_folder_is_raised_or_collected(takes: Path) -> None:
         gmr.read_folder(takes / "a.bvh")
 
 
+def test_recordings_of_markers_in_a_folder_are_said_to_be_left_out(takes: Path) -> None:
+    for name in ("hop.c3d", "b/jump.C3D"):
+        (takes / name).write_bytes(b"\x02P")
+    with pytest.warns(gmr.FormatWarning, match=r"2 files are left out \(b/jump\.C3D, hop\.c3d\)"):
+        found = gmr.read_folder(takes, errors="collect", strict=True)
+    assert list(found) == ["a.bvh", "b/deep/walk.bvh", "b.BVH"]
+    assert list(found.failed) == ["broken.bvh"]
+
+
 def test_a_motion_that_cannot_be_written_leaves_nothing(walk_path: Path, tmp_path: Path) -> None:
     motion = gmr.read(walk_path)
     for place, said in (

@@ -175,20 +175,24 @@ class Failures:
 
 
 def files_of(path: str) -> list[Path | str]:
-    """The files that an argument means: itself, ``-``, or for a folder all motions in it.
+    """The files that an argument means: itself, ``-``, or for a folder all motions in it; recordings of
+    markers in it are said to be left out.
 
     Raises:
         GmrError: a folder without motions.
     """
     if path == STDIO or not Path(path).is_dir():
         return [path]
-    from gmr.formats import motion_files
+    from gmr.formats.folder import left_out_markers, motion_files
     from gmr.formats.registry import suffixes
 
-    found = motion_files(path)
+    found, left_out = motion_files(path), left_out_markers(path)
     if not found:
         known = ", ".join(suffixes("motion"))
-        raise GmrError(f"{path}: no motion in this folder or those below ({known})")
+        nothing = f"{path}: no motion in this folder or those below ({known})"
+        raise GmrError(f"{nothing}; {left_out}" if left_out else nothing)
+    if left_out:
+        say(f"{path}: {left_out}")
     return [Path(path, file) for file in found]
 
 
