@@ -153,6 +153,31 @@ def test_what_does_not_fit_is_refused_in_a_sentence(
     assert not out.exists()
 
 
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--relation", "ior"], "--relation is for recordings of markers (C3D) only, but '{walk}' holds"),
+        (["--subject", "Anna"], "a motion; leave it out"),
+        (["--max-gap", "0.2"], "--max-gap is for"),
+        (["--undo-swaps", "--known-only"], "--undo-swaps, --known-only are for"),
+        (["--picture", "{folder}/walk.svg"], "--picture is for"),
+    ],
+)
+@pytest.mark.parametrize("out", ["{folder}/walk.gmr", "-"])
+def test_options_for_markers_are_refused_where_there_are_none(
+    options: list[str],
+    said: str,
+    out: str,
+    walk_path: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    line = [arg.format(folder=tmp_path) for arg in ("convert", str(walk_path), out, *options)]
+    assert finished(command, line) == 2
+    assert said.format(walk=walk_path) in " ".join(capsys.readouterr().err.split())
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_relation_that_ships_is_offered_in_the_help() -> None:
     shown = run("convert", "--help").output
     assert load_relation("ior").file.removesuffix(".toml") in shown

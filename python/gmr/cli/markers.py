@@ -38,6 +38,7 @@ class Fitting:
         known_only: whether only the longest stretch is written in which all parts are known.
         picture: where to draw a film strip; None: nowhere.
         as_json: whether the report of the fit is printed as JSON.
+        given: the options on the command line that say nothing of other inputs.
     """
 
     relation: str | None
@@ -47,6 +48,21 @@ class Fitting:
     known_only: bool
     picture: str | None
     as_json: bool
+    given: tuple[str, ...] = ()
+
+    def check_unneeded(self, motion: Motion) -> None:
+        """Refuses options for markers where the input is a motion already.
+
+        Raises:
+            UsageError: some were given.
+        """
+        if self.given:
+            alone = len(self.given) == 1
+            what = (
+                f"{listed(self.given, FEW)} {'is' if alone else 'are'} for recordings of markers (C3D) only"
+            )
+            advice = f"leave {'it' if alone else 'them'} out"
+            raise click.UsageError(f"{what}, but '{motion.name}' holds a motion; {advice}")
 
     def motion(self, markers: Markers) -> Motion:
         """The motion that a recording becomes; what there is to say of it is said.
@@ -88,13 +104,24 @@ def fitting_options(command: Command) -> Command:
 
     @functools.wraps(command)
     def taking(**values: Any) -> Any:
-        keys = ("relation", "subject", "max_gap", "undo_swaps", "known_only", "picture", "as_json")
-        return command(fitting=Fitting(**{key: values.pop(key) for key in keys}), **values)
+        keys = ("relation", "subject", "max_gap", "undo_swaps", "known_only", "picture")
+        chosen = {key: values.pop(key) for key in keys}
+        fitting = Fitting(**chosen, as_json=values.pop("as_json"), given=_given(keys))
+        return command(fitting=fitting, **values)
 
     wrapped: Any = taking
     for option in reversed(options):
         wrapped = option(wrapped)
     return wrapped  # type: ignore[no-any-return]
+
+
+def _given(keys: tuple[str, ...]) -> tuple[str, ...]:
+    """Those of the options that were not left to their defaults, as they are written."""
+    context = click.get_current_context()
+    default = click.core.ParameterSource.DEFAULT
+    return tuple(
+        f"--{key.replace('_', '-')}" for key in keys if context.get_parameter_source(key) is not default
+    )
 
 
 def marker_page(path: str, of: MarkerDescription) -> str:
