@@ -178,6 +178,17 @@ def test_options_for_markers_are_refused_where_there_are_none(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("name", ["walk.png", "walk", "-"])
+def test_a_picture_is_an_svg_and_is_called_so(
+    name: str, walk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    line = ["convert", str(walk), str(tmp_path / "walk.bvh"), "--picture", name]
+    assert finished(command, line) == 2
+    said = " ".join(capsys.readouterr().err.split())
+    assert f"the picture is an SVG; give a name that ends with .svg, not '{name}'" in said
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_relation_that_ships_is_offered_in_the_help() -> None:
     shown = run("convert", "--help").output
     assert load_relation("ior").file.removesuffix(".toml") in shown

@@ -26,6 +26,19 @@ FEW: Final = 6
 """Names, gaps or parts that a line lists; the others it counts."""
 
 
+class Picture(click.ParamType[Path]):
+    """Where to draw an SVG."""
+
+    name = "FILE.svg"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """The place."""
+        path = Path(value)
+        if path.suffix.lower() != ".svg":
+            self.fail(f"the picture is an SVG; give a name that ends with .svg, not '{value}'", param, ctx)
+        return path
+
+
 @dataclass(frozen=True)
 class Fitting:
     """How markers are to become a motion.
@@ -46,7 +59,7 @@ class Fitting:
     max_gap: float
     undo_swaps: bool
     known_only: bool
-    picture: str | None
+    picture: Path | None
     as_json: bool
     given: tuple[str, ...] = ()
 
@@ -80,7 +93,7 @@ class Fitting:
         else:
             _say_fit(fit)
         if self.picture is not None:
-            _draw(fit, Path(self.picture))
+            _draw(fit, self.picture)
         return _known(fit, self.known_only)
 
 
@@ -97,7 +110,8 @@ def fitting_options(command: Command) -> Command:
         click.option("--undo-swaps", is_flag=True, help="C3D: put exchanged labels right first."),
         click.option("--known-only", is_flag=True,
                      help="C3D: write only the longest stretch in which every part is known."),
-        click.option("--picture", metavar="FILE.svg", help="C3D: draw markers and skeleton in some frames."),
+        click.option("--picture", type=Picture(), metavar="FILE.svg",
+                     help="C3D: draw markers and skeleton in some frames."),
         click.option("--json", "as_json", is_flag=True, help="Print JSON: which files were written and which "
                      "failed; for C3D, how well the markers fit."),
     )  # fmt: skip
