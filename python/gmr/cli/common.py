@@ -258,21 +258,32 @@ def write_output(motion: Motion, out: Path | str, format: str | None = None) -> 
 
 
 def _written(motion: Motion, out: Path | str, format: str | None) -> list[str]:
+    from gmr.cli.lost_roots import lost_roots
     from gmr.formats import write
-    from gmr.formats.registry import format_of_file
+    from gmr.formats.registry import FORMATS, format_of_file, named_format
 
     if out == STDIO:
-        write(motion, sys.stdout.buffer, format)
+        chosen = FORMATS[0] if format is None else named_format(format)
+        write(motion, sys.stdout.buffer, chosen.name)
         sys.stdout.buffer.flush()
-        return []
+        second = None
+    else:
+        chosen = format_of_file(str(out))
+        _write_file(motion, out)
+        second = chosen.place_beside(Path(out))
+    if lost := lost_roots(motion, chosen):
+        say(f"{'standard output' if out == STDIO else out}: {lost}")
+    if chosen.name == "ASF" and out != STDIO and motion.frame_count:
+        say(f"{out} holds the skeleton alone; write an .amc for the frames")
+    return [] if second is None else [str(second)]
+
+
+def _write_file(motion: Motion, out: Path | str) -> None:
+    from gmr.formats import write
+
     if isinstance(out, Path):
         try:
             out.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise GmrError(f"{out}: its folder cannot be made: {error.strerror}") from error
     write(motion, out)
-    chosen = format_of_file(str(out))
-    if chosen.name == "ASF" and motion.frame_count:
-        say(f"{out} holds the skeleton alone; write an .amc for the frames")
-    second = chosen.place_beside(Path(out))
-    return [] if second is None else [str(second)]

@@ -38,6 +38,8 @@ class Format:
         is_mapped: the reader takes the map of a file in memory as well as its bytes.
         holds: what is in its files; folders are searched for motions only.
         in_metres: lengths are in metres whatever the unit of the motion is.
+        roots: which roots it can keep: all; the "joined" ones, which were not split off; or the "first",
+            those from before any was moved.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Format:
     is_mapped: bool = False
     holds: Literal["motion", "markers"] = "motion"
     in_metres: bool = False
+    roots: Literal["all", "joined", "first"] = "joined"
 
     @property
     def is_text(self) -> bool:
@@ -134,10 +137,12 @@ FORMATS: Final = (
         "gmr.formats.asf_amc", "read_asf", "asf_chunks",
         serving="serving_asf",
     ),
-    Format("GMR", (".gmr",), (b"GMR",), "gmr.formats.gmr", "read_gmr", "gmr_chunks", is_mapped=True),
+    Format(
+        "GMR", (".gmr",), (b"GMR",), "gmr.formats.gmr", "read_gmr", "gmr_chunks", is_mapped=True, roots="all",
+    ),
     Format(
         "GMRB", (".gmrb",), (b'{"__metadata__":',), "gmr.formats.gmr", "read_gmr", "gmrb_pieces",
-        begins_at=8, is_mapped=True,
+        begins_at=8, is_mapped=True, roots="all",
     ),
     Format("C3D", (".c3d",), (b"\x02P",), "gmr.formats.c3d", "read_c3d", None, begins_at=0, holds="markers"),
     Format(
@@ -145,7 +150,10 @@ FORMATS: Final = (
         options=("animation", "fps"), begins_at=0, in_metres=True,
     ),
     Format("glTF", (".gltf",), (b"{",), "gmr.formats.gltf", "read_gltf", None, options=("animation", "fps")),
-    Format("X3D", (".x3d",), (b"<?XML", b"<X3D"), "gmr.formats.x3d", None, "x3d_chunks", in_metres=True),
+    Format(
+        "X3D", (".x3d",), (b"<?XML", b"<X3D"), "gmr.formats.x3d", None, "x3d_chunks",
+        in_metres=True, roots="first",
+    ),
 )  # fmt: skip
 
 
