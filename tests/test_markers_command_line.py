@@ -93,6 +93,15 @@ def test_convert_makes_a_motion_of_markers_and_says_how_well(walk: Path, tmp_pat
     assert picture.read_text().startswith("<svg")
 
 
+def test_convert_names_markers_of_the_relation_that_are_not_recorded(walk: Path, tmp_path: Path) -> None:
+    shipped = Path(gmr.__file__).parent / "data" / "relations" / load_relation("ior").file
+    mine = tmp_path / "mine.toml"
+    mine.write_text(shipped.read_text().replace("CV7", "XQZ").replace("R_HDF", "R_HDFX"))
+    said = run("convert", walk, tmp_path / "walk.bvh", "--relation", mine).stderr
+    assert "'R_HDFX' (did you mean 'R_HDF'?), 'XQZ' are not in the recording" in said
+    assert "not in the recording" not in run("convert", walk, tmp_path / "walk.bvh").stderr
+
+
 def test_convert_changes_the_motion_as_any_other(walk: Path, tmp_path: Path) -> None:
     done = run("convert", walk, tmp_path / "walk.bvh", "--fps", "30", "--unit", "m")
     assert done.exit_code == 0, done.output

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
@@ -214,9 +214,22 @@ def _say_fit(fit: MarkerFit) -> None:
         say(f"{name}: {note}")
     for part, why in report.left_out.items():
         say(f"{name}: {part} is left out: {why}")
+    if report.missing:
+        verb = "is" if len(report.missing) == 1 else "are"
+        say(f"{name}: {_missing(report.missing)} {verb} not in the recording")
     bridged = sum(stretch.became == "bridged" for part in report.parts for stretch in part.stretches)
     if bridged:
         say(f"{name}: {bridged} short stretches in which a part is not seen are bridged")
+
+
+def _missing(missing: Mapping[str, tuple[str, ...]]) -> str:
+    """Markers of a relation that are not there; first those that are nearly called as one that is, for these
+    may be misspelt."""
+    each = [
+        f"'{label}'" + (f" (did you mean {quoted(near, 2)}?)" if near else "")
+        for label, near in sorted(missing.items(), key=lambda entry: not entry[1])
+    ]
+    return listed(each, FEW)
 
 
 def _known(fit: MarkerFit, known_only: bool) -> Motion:
