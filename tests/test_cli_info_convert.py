@@ -181,7 +181,11 @@ def test_standard_input_goes_to_standard_output(walk_path: Path) -> None:
 @pytest.mark.parametrize(
     ("args", "said"),
     [
-        (["convert", "{walk}", "out.xyz"], "'.xyz' is none that gmr knows"),
+        (["convert", "{walk}", "out.xyz"], "'.xyz' is none that gmr writes"),
+        (
+            ["convert", "{walk}", "out.c3d"],
+            "out.c3d: gmr reads C3D but does not write it; write one of: .bvh, .amc",
+        ),
         (["convert", "{walk}", "out.bvh", "--fps", "0"], "above 0"),
         (["convert", "{walk}", "out.bvh", "--unit", "parsec"], "there is no unit 'parsec'"),
         (["convert", "{folder}", "-"], "OUT must be a folder"),

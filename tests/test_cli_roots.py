@@ -187,7 +187,7 @@ def test_what_is_read_from_standard_input_can_be_shown(walk_path: Path) -> None:
     [
         (["--out", "x.bvh"], 2, "nothing to write: choose roots with --set, --split, --join or --shift"),
         (["--set", "Hips,,Neck"], 2, "'Hips,,Neck' has an empty name in it"),
-        (["--set", "Neck", "--out", "x.xyz"], 2, "'.xyz' is none that gmr knows"),
+        (["--set", "Neck", "--out", "x.xyz"], 2, "'.xyz' is none that gmr writes"),
         (["--set", "Neck", "--out", "-", "--json"], 2, "the motion goes to standard output"),
         (["--set", "Nekc", "--out", "x.bvh"], 1, "did you mean 'Neck'"),
         (["--join", "Hips", "--out", "x.bvh"], 1, "'Hips' is the last root"),

@@ -298,7 +298,7 @@ def test_a_motion_is_no_recording_of_markers(walk_path: Path) -> None:
 
 def test_c3d_is_not_written(walk_path: Path, tmp_path: Path) -> None:
     with pytest.raises(
-        gmr.FormatError, match=r"gmr reads C3D but does not write it; write one of: \.bvh"
+        gmr.FormatError, match=r"out\.c3d: gmr reads C3D but does not write it; write one of: \.bvh"
     ):
         gmr.write(gmr.read(walk_path), tmp_path / "out.c3d")
     assert not (tmp_path / "out.c3d").exists()

@@ -112,7 +112,7 @@ def _target(file: str, out: str | None) -> Path | str:
     if out == STDIO:
         return STDIO
     try:
-        format_of_file(out)
+        format_of_file(out, written=True)
     except FormatError as error:
         raise click.UsageError(str(error)) from error
     return Path(out)

@@ -104,12 +104,12 @@ def _check_folder(source: str, target: str) -> None:
 
 
 def _check_suffix(target: str, to: Format | None) -> None:
-    """Refuses a place that no format has the suffix of, or another format than the one asked for."""
+    """Refuses a place whose suffix is of no format that gmr writes, or of another than the one asked for."""
     from gmr.errors import FormatError
     from gmr.formats.registry import format_of_file
 
     try:
-        found = format_of_file(target)
+        found = format_of_file(target, written=True)
     except FormatError as error:
         raise click.UsageError(str(error)) from error
     if to not in (None, found):
