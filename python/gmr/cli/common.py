@@ -17,6 +17,7 @@ from gmr.errors import FormatWarning, GmrError
 from gmr.unbuffered import Whole
 
 if TYPE_CHECKING:
+    from gmr.formats.registry import Format
     from gmr.motion import Motion
 
 __all__ = [
@@ -244,7 +245,12 @@ def naming(motion: Motion) -> Iterator[None]:
 
 
 def write_output(motion: Motion, out: Path | str, format: str | None = None) -> list[str]:
-    """Writes a motion, by suffix; ``-`` is standard output, in ``format``. Makes folders where none are.
+    """Writes a motion. Makes folders where none are.
+
+    Args:
+        motion: what to write.
+        out: a file, or ``-`` for standard output.
+        format: the name of the format to write; None: told by the suffix, and BVH for ``-``.
 
     Returns:
         The file that was written beside, if one was.
@@ -262,14 +268,16 @@ def _written(motion: Motion, out: Path | str, format: str | None) -> list[str]:
     from gmr.formats import write
     from gmr.formats.registry import FORMATS, format_of_file, named_format
 
+    if format is not None:
+        chosen = named_format(format)
+    else:
+        chosen = FORMATS[0] if out == STDIO else format_of_file(str(out), written=True)
     if out == STDIO:
-        chosen = FORMATS[0] if format is None else named_format(format)
         write(motion, sys.stdout.buffer, chosen.name)
         sys.stdout.buffer.flush()
         second = None
     else:
-        chosen = format_of_file(str(out))
-        _write_file(motion, out)
+        _write_file(motion, out, chosen)
         second = chosen.place_beside(Path(out))
     if lost := lost_roots(motion, chosen):
         say(f"{'standard output' if out == STDIO else out}: {lost}")
@@ -278,7 +286,7 @@ def _written(motion: Motion, out: Path | str, format: str | None) -> list[str]:
     return [] if second is None else [str(second)]
 
 
-def _write_file(motion: Motion, out: Path | str) -> None:
+def _write_file(motion: Motion, out: Path | str, chosen: Format) -> None:
     from gmr.formats import write
 
     if isinstance(out, Path):
@@ -286,4 +294,4 @@ def _write_file(motion: Motion, out: Path | str) -> None:
             out.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise GmrError(f"{out}: its folder cannot be made: {error.strerror}") from error
-    write(motion, out)
+    write(motion, out, chosen.name)

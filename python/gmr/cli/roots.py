@@ -90,7 +90,7 @@ def roots(
         for joint in shifts or ():
             motion = motion.shift_root(joint)
     if target is not None:
-        for second in write_output(motion, target, format="gmr"):
+        for second in write_output(motion, target, "gmr" if target == STDIO else None):
             say(f"the skeleton is in {second}")
     if target != STDIO:
         _print(motion, file, target, as_json)

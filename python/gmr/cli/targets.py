@@ -25,7 +25,7 @@ class Job:
     Args:
         source: a file, or ``-``.
         out: a file, or ``-``.
-        format: the name of the format to write; None: the suffix of ``out`` tells it.
+        format: the name of the format to write, whatever the suffix of ``out``; None: the suffix tells it.
     """
 
     source: Path | str
@@ -73,14 +73,15 @@ def jobs_of(source: str, target: str, to: Format | None) -> list[Job]:
         ]
         _check_places(jobs)
         return jobs
+    asked = None if to is None else to.name
     if target == STDIO:
-        return [Job(source, target, None if to is None else to.name)]
+        return [Job(source, target, asked)]
     if Path(target).is_dir():
         if source == STDIO:
             raise click.UsageError(f"'{target}' is a folder; name the file to write")
         return [Job(source, _place(Path(target, Path(source).name), to))]
     _check_suffix(target, to)
-    return [Job(source, target)]
+    return [Job(source, target, asked)]
 
 
 def _place(path: Path, to: Format | None) -> Path:
@@ -104,10 +105,14 @@ def _check_folder(source: str, target: str) -> None:
 
 
 def _check_suffix(target: str, to: Format | None) -> None:
-    """Refuses a place whose suffix is of no format that gmr writes, or of another than the one asked for."""
+    """Refuses a place whose suffix is of another format than the one asked for; or, where none is asked for,
+    of none that gmr writes."""
     from gmr.errors import FormatError
-    from gmr.formats.registry import format_of_file
+    from gmr.formats.registry import FORMATS, format_of_file
 
+    told = any(Path(target).suffix.lower() in known.suffixes for known in FORMATS)
+    if to is not None and not told:
+        return
     try:
         found = format_of_file(target, written=True)
     except FormatError as error:
