@@ -230,6 +230,24 @@ def test_recordings_of_markers_in_a_folder_are_said_to_be_left_out(
     assert f"gmr: {tmp_path}: {why}{tmp_path / 'hop.gmr'}\n" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    "args", [("info", "{folder}"), ("convert", "{folder}", "{folder}/out", "--to", "gmr")]
+)
+def test_a_sentence_stands_on_a_line_of_its_own_while_a_bar_is_shown(
+    args: tuple[str, ...], walk_path: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("a", "c"):
+        shutil.copy(walk_path, tmp_path / f"{name}.bvh")
+    (tmp_path / "b.bvh").write_text("no motion")
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    assert run(*(arg.format(folder=tmp_path) for arg in args)) == 1
+    bar, said = capsys.readouterr().err.split(f"gmr: {tmp_path}/b.bvh:1", 1)
+    assert "%" in bar
+    assert bar.endswith("\r\x1b[K")
+    assert "100%" in said
+    assert "\x1b[K" not in said
+
+
 def test_a_disk_that_fills_up_leaves_the_old_file(walk_path: Path, tmp_path: Path) -> None:
     out = tmp_path / "out.bvh"
     out.write_bytes(b"what was there")

@@ -40,6 +40,9 @@ Item = TypeVar("Item")
 STDIO = "-"
 INTERRUPTED = 130
 
+_bars: list[object] = []
+"""Bars on stderr that have not come to their ends."""
+
 
 def finished(command: click.Command, args: list[str] | None = None) -> int:
     """Runs a command and tells its exit code; every expected trouble is one sentence on stderr."""
@@ -102,8 +105,9 @@ def _with_whole_writes(stream: TextIO) -> TextIO:
 
 
 def say(sentence: str) -> None:
-    """One sentence on stderr."""
-    click.echo(f"gmr: {sentence}", err=True)
+    """One sentence on stderr, in the place of a bar that has not come to its end; the bar goes on below."""
+    rewind = "\r\x1b[K" if _bars else ""
+    click.echo(f"{rewind}gmr: {sentence}", err=True)
 
 
 class Unit(click.ParamType[float]):
@@ -230,7 +234,11 @@ def progress(items: Iterable[Item], label: str) -> Iterator[Iterable[Item]]:
         yield held
         return
     with click.progressbar(held, label=label, file=sys.stderr) as bar:
-        yield bar
+        _bars.append(bar)
+        try:
+            yield bar
+        finally:
+            _bars.remove(bar)
 
 
 @contextmanager
