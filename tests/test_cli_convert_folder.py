@@ -132,7 +132,10 @@ def test_a_folder_is_converted_in_place_where_nothing_is_in_the_way(takes: Path)
     ("args", "said"),
     [
         (["{takes}", "{out}", "--to", "c3d"], "gmr reads C3D but does not write it; write one of: bvh, amc"),
-        (["{takes}", "{out}", "--to", "fbx"], "there is no format 'fbx'"),
+        (
+            ["{takes}", "{out}", "--to", "fbx"],
+            "there is no format 'fbx'; write one of: bvh, amc, asf, gmr, gmrb, glb, x3d",
+        ),
         (["{takes}/walk.BVH", "{out}.gmr", "--to", "bvh"], "--to asks for BVH, but"),
         (["{takes}/walk.BVH", "-", "--json"], "--json is printed on standard output, where the motion goes"),
     ],

@@ -43,12 +43,12 @@ class Written(click.ParamType["Format"]):
         from gmr.errors import GmrError
         from gmr.formats.registry import FORMATS, named_format
 
+        others = ", ".join(known.name.lower() for known in FORMATS if known.writer)
         try:
             found = named_format(value)
-        except GmrError as error:
-            self.fail(str(error), param, ctx)
+        except GmrError:
+            self.fail(f"there is no format '{value}'; write one of: {others}", param, ctx)
         if found.writer is None:
-            others = ", ".join(known.name.lower() for known in FORMATS if known.writer)
             self.fail(f"gmr reads {found.name} but does not write it; write one of: {others}", param, ctx)
         return found
 
