@@ -170,9 +170,14 @@ ODD: list[tuple[list[tuple[str, str]], list[list[float]], str | None]] = [
     (
         [("Frames: 2", "Frames: 1")],
         ROWS[:1],
-        "walk.bvh:18: 1 frame is declared, but 2 rows are there",
+        "walk.bvh:17: 1 frame is declared, but 2 rows are there",
     ),
-    ([("Frames: 2", "Frames: 3")], ROWS, "walk.bvh:18: 3 frames are declared, but 2 are there"),
+    ([("Frames: 2", "Frames: 3")], ROWS, "walk.bvh:17: 3 frames are declared, but 2 are there"),
+    (
+        [("Frames: 2", f"Frames: 1{26 * '0'}")],
+        ROWS,
+        "walk.bvh:17: at least 1,000,000,000,000,000,000 frames are declared, but 2 are there",
+    ),
     ([("Frames: 2", "Frames: 0")], [], "0 frames are declared, but 2 rows are there"),
     ([(" -8 -9.125\n", "")], ROWS[:1], "walk.bvh:20: the file ends inside frame 1, after 7 of its 9 numbers"),
     ([(" -9.125\n", " -9.")], [ROWS[0], [*ROWS[1][:8], -9]], None),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -33,11 +35,40 @@ def test_info_tells_of_degrees_of_freedom_and_of_a_rate_that_nobody_said(
     page = capsys.readouterr().out
     for told in ("20 at 120 fps", "62 a frame", "XYZ rotation (10)", "1.", "no frame rate", "07_01.amc"):
         assert told in page
-    assert "07.asf" not in page
+    assert "a skeleton alone" not in page
     assert run("info", takes / "07_01.amc", "--amc-fps", "60", "--json") == 0
     told = json.loads(capsys.readouterr().out)
     assert (told["fps"], told["joint_count"], told["channels"]) == (60, 31, 62)
     assert not any("rate" in oddity for oddity in told["oddities"])
+
+
+def test_info_tells_which_skeleton_an_amc_hangs_on(takes: Path, tmp_path: Path, capsys: Captured) -> None:
+    found, other = takes / "07.asf", tmp_path / "actor.asf"
+    shutil.copy(found, other)
+    assert run("info", takes / "07_01.amc") == 0
+    assert f"  skeleton  {found}\n" in capsys.readouterr().out
+    assert run("info", takes / "07_01.amc", "--asf", other, "--json") == 0
+    assert json.loads(capsys.readouterr().out)["asf"] == str(other)
+    for take in ("07_02", "07_03", "07_04"):
+        shutil.copy(takes / "07_01.amc", takes / f"{take}.amc")
+    assert run("info", takes) == 0
+    assert f"  skeleton  {found}\n" in capsys.readouterr().out
+    assert run("info", found) == 0
+    assert "  skeleton " not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("line", ["info -", "convert - out.bvh"])
+def test_a_skeleton_that_is_found_for_standard_input_is_named(line: str, takes: Path) -> None:
+    told = []
+    for options in ([], ["--asf", "07.asf"], ["--strict"]):
+        gmr_line = [sys.executable, "-m", "gmr", *line.split(), *options]
+        with (takes / "07_01.amc").open("rb") as file:
+            done = subprocess.run(
+                gmr_line, stdin=file, capture_output=True, check=False, cwd=takes, text=True
+            )
+        said = "its skeleton is taken from 07.asf, for none is named" in done.stdout + done.stderr
+        told.append((done.returncode, said))
+    assert told == [(0, True), (0, False), (1, True)]
 
 
 def test_info_takes_a_skeleton_from_elsewhere(takes: Path, tmp_path: Path, capsys: Captured) -> None:

@@ -132,7 +132,10 @@ def test_a_folder_is_converted_in_place_where_nothing_is_in_the_way(takes: Path)
     ("args", "said"),
     [
         (["{takes}", "{out}", "--to", "c3d"], "gmr reads C3D but does not write it; write one of: bvh, amc"),
-        (["{takes}", "{out}", "--to", "fbx"], "there is no format 'fbx'"),
+        (
+            ["{takes}", "{out}", "--to", "fbx"],
+            "there is no format 'fbx'; write one of: bvh, amc, asf, gmr, gmrb, glb, x3d",
+        ),
         (["{takes}/walk.BVH", "{out}.gmr", "--to", "bvh"], "--to asks for BVH, but"),
         (["{takes}/walk.BVH", "-", "--json"], "--json is printed on standard output, where the motion goes"),
     ],
@@ -144,6 +147,26 @@ def test_what_cannot_be_meant_is_refused(
     assert run("convert", *(arg.format(takes=takes, out=out) for arg in args)) == 2
     assert said in " ".join(capsys.readouterr().err.split())
     assert everything(tmp_path) == sorted(f"takes/{name}" for name in everything(takes))
+
+
+@pytest.mark.parametrize("to", ["bvh", "gmr", "gmrb", "amc", "glb"])
+@pytest.mark.parametrize("name", ["walk", "walk.mocap"])
+def test_the_format_asked_for_decides_where_the_suffix_does_not(
+    to: str, name: str, takes: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    out, like = tmp_path / name, tmp_path / f"like.{to}"
+    asked = ["--unit", "m", "--from-unit", "cmu", "--to", to]
+    assert run("convert", takes / "walk.BVH", out, *asked) == 0
+    assert (tmp_path / "walk.asf").exists() == (to == "amc")
+    assert f"skeleton is in {tmp_path / 'walk.asf'}" in capsys.readouterr().err or to != "amc"
+    assert run("convert", takes / "walk.BVH", like, *asked) == 0
+    one, other = (path.read_bytes().replace(b"walk", b"like") for path in (out, like))
+    assert one == other
+
+
+def test_the_format_asked_for_decides_what_goes_to_a_device(takes: Path, capsys: Captured) -> None:
+    assert run("convert", takes / "walk.BVH", "/dev/full", "--to", "gmr") == 1
+    assert "/dev/full: cannot be written: No space left on device" in capsys.readouterr().err
 
 
 def test_standard_output_gets_the_format_that_is_asked_for(takes: Path) -> None:

@@ -181,7 +181,11 @@ def test_standard_input_goes_to_standard_output(walk_path: Path) -> None:
 @pytest.mark.parametrize(
     ("args", "said"),
     [
-        (["convert", "{walk}", "out.xyz"], "'.xyz' is none that gmr knows"),
+        (["convert", "{walk}", "out.xyz"], "'.xyz' is none that gmr writes"),
+        (
+            ["convert", "{walk}", "out.c3d"],
+            "out.c3d: gmr reads C3D but does not write it; write one of: .bvh, .amc",
+        ),
         (["convert", "{walk}", "out.bvh", "--fps", "0"], "above 0"),
         (["convert", "{walk}", "out.bvh", "--unit", "parsec"], "there is no unit 'parsec'"),
         (["convert", "{folder}", "-"], "OUT must be a folder"),
@@ -205,6 +209,43 @@ def test_a_missing_file_is_named(missing: str, tmp_path: Path, capsys: Captured)
 def test_a_folder_without_motions_is_named(tmp_path: Path, capsys: Captured) -> None:
     assert run("info", tmp_path) == 1
     assert "no motion in this folder" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "args", [("info", "{folder}"), ("convert", "{folder}", "{folder}/out", "--to", "gmr")]
+)
+def test_recordings_of_markers_in_a_folder_are_said_to_be_left_out(
+    args: tuple[str, ...], walk_path: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    recording = tmp_path / "hop.c3d"
+    recording.write_bytes(b"\x02P")
+    line = [arg.format(folder=tmp_path) for arg in args]
+    why = (
+        f"hop.c3d is left out: it holds markers, not a motion; make one of it first: gmr convert {recording} "
+    )
+    assert run(*line) == 1
+    assert f"(.bvh, .amc, .asf, .gmr, .gmrb, .glb, .gltf); {why}" in capsys.readouterr().err
+    shutil.copy(walk_path, tmp_path)
+    assert run(*line) == 0
+    assert f"gmr: {tmp_path}: {why}{tmp_path / 'hop.gmr'}\n" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "args", [("info", "{folder}"), ("convert", "{folder}", "{folder}/out", "--to", "gmr")]
+)
+def test_a_sentence_stands_on_a_line_of_its_own_while_a_bar_is_shown(
+    args: tuple[str, ...], walk_path: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("a", "c"):
+        shutil.copy(walk_path, tmp_path / f"{name}.bvh")
+    (tmp_path / "b.bvh").write_text("no motion")
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    assert run(*(arg.format(folder=tmp_path) for arg in args)) == 1
+    bar, said = capsys.readouterr().err.split(f"gmr: {tmp_path}/b.bvh:1", 1)
+    assert "%" in bar
+    assert bar.endswith("\r\x1b[K")
+    assert "100%" in said
+    assert "\x1b[K" not in said
 
 
 def test_a_disk_that_fills_up_leaves_the_old_file(walk_path: Path, tmp_path: Path) -> None:

@@ -85,6 +85,48 @@ def test_convert_chooses_roots_too(walk_path: Path, tmp_path: Path) -> None:
     assert_same_places(gmr.read(walk_path), gmr.read(out))
 
 
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        (
+            ("convert", "{walk}", "{out}.bvh", "--roots", "Hips,Neck"),
+            "{out}.bvh: BVH cannot keep 'Neck' as a",
+        ),
+        (
+            ("convert", "{walk}", "{out}.amc", "--roots", "Neck,LeftHand"),
+            "AMC cannot keep 'LeftHand' as a root",
+        ),
+        (("convert", "{walk}", "-", "--roots", "Hips,Neck"), "standard output: BVH cannot keep 'Neck' as a"),
+        (
+            ("roots", "{walk}", "--split", "Neck,Head", "--out", "{out}.bvh"),
+            "keep 'Neck', 'Head' as roots, so",
+        ),
+        (
+            ("convert", "{walk}", "{out}.x3d", "--roots", "Neck", "--unit", "cmu", "--from-unit", "cmu"),
+            "X3D cannot keep 'Neck' as a root, so it hangs on its old parent again; .gmr and .gmrb keep it",
+        ),
+    ],
+)
+def test_roots_that_a_format_cannot_keep_are_named(
+    args: tuple[str, ...], said: str, walk_path: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    out = tmp_path / "out"
+    assert run(*(arg.format(walk=walk_path, out=out) for arg in args)) == 0
+    assert said.format(out=out) in " ".join(capsys.readouterr().err.split())
+
+
+@pytest.mark.parametrize(
+    "args",
+    [("out.bvh", "Hips"), ("out.bvh", "Neck"), ("out.gmr", "Hips,Neck"), ("out.gmrb", "Neck,LeftHand")],
+)
+def test_nothing_is_said_of_roots_that_are_kept(
+    args: tuple[str, str], walk_path: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    assert run("convert", walk_path, tmp_path / args[0], "--roots", args[1]) == 0
+    assert capsys.readouterr().err == ""
+    assert gmr.read(tmp_path / args[0]).roots == tuple(args[1].split(","))
+
+
 def test_choices_are_followed_in_the_order_that_help_tells(
     walk_path: Path, tmp_path: Path, capsys: Captured
 ) -> None:
@@ -145,7 +187,7 @@ def test_what_is_read_from_standard_input_can_be_shown(walk_path: Path) -> None:
     [
         (["--out", "x.bvh"], 2, "nothing to write: choose roots with --set, --split, --join or --shift"),
         (["--set", "Hips,,Neck"], 2, "'Hips,,Neck' has an empty name in it"),
-        (["--set", "Neck", "--out", "x.xyz"], 2, "'.xyz' is none that gmr knows"),
+        (["--set", "Neck", "--out", "x.xyz"], 2, "'.xyz' is none that gmr writes"),
         (["--set", "Neck", "--out", "-", "--json"], 2, "the motion goes to standard output"),
         (["--set", "Nekc", "--out", "x.bvh"], 1, "did you mean 'Neck'"),
         (["--join", "Hips", "--out", "x.bvh"], 1, "'Hips' is the last root"),

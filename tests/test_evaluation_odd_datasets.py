@@ -168,6 +168,20 @@ def test_what_is_odd_is_taken_and_told_on_the_terminal_and_in_the_report(
     assert says in told(report.read_text().replace("&#x27;", "'"))
 
 
+def test_recordings_of_markers_are_said_to_be_left_out(tmp_path: Path, capsys: Captured) -> None:
+    folder = folder_of(tmp_path / "takes", {"walk": WALK})
+    (folder / "hop.c3d").write_bytes(b"\x02P")
+    evaluate = ["evaluate", str(folder), *SMALL, "--scenario", "constant", "--no-report"]
+    why = "hop.c3d is left out: it holds markers, not a motion; make one of it first"
+    assert finished(command, evaluate) == 0
+    assert why in told(capsys.readouterr().out)
+    (folder / "walk.bvh").unlink()
+    assert finished(command, evaluate) == 1
+    said = told(capsys.readouterr().err)
+    assert why in said
+    assert "holds no motion files (.bvh, .amc, .asf, .gmr, .gmrb, .glb and .gltf)" in said
+
+
 @pytest.mark.parametrize("case", LEFT_OUT)
 @pytest.mark.parametrize("subcommand", ["evaluate", "complete"])
 def test_one_bad_file_among_good_ones_is_left_out_and_named(

@@ -93,6 +93,15 @@ def test_convert_makes_a_motion_of_markers_and_says_how_well(walk: Path, tmp_pat
     assert picture.read_text().startswith("<svg")
 
 
+def test_convert_names_markers_of_the_relation_that_are_not_recorded(walk: Path, tmp_path: Path) -> None:
+    shipped = Path(gmr.__file__).parent / "data" / "relations" / load_relation("ior").file
+    mine = tmp_path / "mine.toml"
+    mine.write_text(shipped.read_text().replace("CV7", "XQZ").replace("R_HDF", "R_HDFX"))
+    said = run("convert", walk, tmp_path / "walk.bvh", "--relation", mine).stderr
+    assert "'R_HDFX' (did you mean 'R_HDF'?), 'XQZ' are not in the recording" in said
+    assert "not in the recording" not in run("convert", walk, tmp_path / "walk.bvh").stderr
+
+
 def test_convert_changes_the_motion_as_any_other(walk: Path, tmp_path: Path) -> None:
     done = run("convert", walk, tmp_path / "walk.bvh", "--fps", "30", "--unit", "m")
     assert done.exit_code == 0, done.output
@@ -151,6 +160,42 @@ def test_what_does_not_fit_is_refused_in_a_sentence(
     assert finished(command, ["convert", str(walk), str(out), *arguments]) == 1
     assert said in capsys.readouterr().err
     assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--relation", "ior"], "--relation is for recordings of markers (C3D) only, but '{walk}' holds"),
+        (["--subject", "Anna"], "a motion; leave it out"),
+        (["--max-gap", "0.2"], "--max-gap is for"),
+        (["--undo-swaps", "--known-only"], "--undo-swaps, --known-only are for"),
+        (["--picture", "{folder}/walk.svg"], "--picture is for"),
+    ],
+)
+@pytest.mark.parametrize("out", ["{folder}/walk.gmr", "-"])
+def test_options_for_markers_are_refused_where_there_are_none(
+    options: list[str],
+    said: str,
+    out: str,
+    walk_path: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    line = [arg.format(folder=tmp_path) for arg in ("convert", str(walk_path), out, *options)]
+    assert finished(command, line) == 2
+    assert said.format(walk=walk_path) in " ".join(capsys.readouterr().err.split())
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["walk.png", "walk", "-"])
+def test_a_picture_is_an_svg_and_is_called_so(
+    name: str, walk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    line = ["convert", str(walk), str(tmp_path / "walk.bvh"), "--picture", name]
+    assert finished(command, line) == 2
+    said = " ".join(capsys.readouterr().err.split())
+    assert f"the picture is an SVG; give a name that ends with .svg, not '{name}'" in said
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_relation_that_ships_is_offered_in_the_help() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -168,6 +169,11 @@ def test_a_relation_that_does_not_fit_says_what_is_missing_and_what_is_near() ->
         gmr.GmrError, match=r"no part of 'IOR full body' can be fitted\. Missing are 'L_IAS', 'R_IAS'"
     ):
         markers.fit("ior")
+    with pytest.raises(gmr.GmrError, match=r"it holds no markers, and a motion is made of markers\. Export"):
+        markers.select([]).fit()
+    rotations = replace(markers.select([]), name="turns.c3d", ignored=("rotations of 21 segments",))
+    with pytest.raises(gmr.GmrError, match=r"turns\.c3d: it holds no markers, only rotations of 21 segments"):
+        rotations.fit("ior")
     with pytest.raises(
         gmr.GmrError, match=r"its labels \('L_FLE', 'L_FME', 'CV7'\) are those of no marker set"
     ):

@@ -52,7 +52,7 @@ def test_what_is_written_reads_back_the_same(motion: Motion) -> None:
         ("nowhere/walk.bvh", "no folder"),
         ("folder.bvh", "gmr.read_folder"),
         ("empty.bvh", "the file is empty"),
-        ("walk.fbx", "the suffix '.fbx' is none that gmr knows"),
+        ("walk.fbx", r"'.fbx' is none that gmr reads \(.bvh, .amc, .asf, .gmr, .gmrb, .c3d, .glb, .gltf\)"),
         ("walk", "a name without a suffix"),
     ],
 )
@@ -120,12 +120,21 @@ def test_a_broken_file_of_a_folder_is_raised_or_collected(takes: Path) -> None:
         gmr.read_folder(takes / "a.bvh")
 
 
+def test_recordings_of_markers_in_a_folder_are_said_to_be_left_out(takes: Path) -> None:
+    for name in ("hop.c3d", "b/jump.C3D"):
+        (takes / name).write_bytes(b"\x02P")
+    with pytest.warns(gmr.FormatWarning, match=r"2 files are left out \(b/jump\.C3D, hop\.c3d\)"):
+        found = gmr.read_folder(takes, errors="collect", strict=True)
+    assert list(found) == ["a.bvh", "b/deep/walk.bvh", "b.BVH"]
+    assert list(found.failed) == ["broken.bvh"]
+
+
 def test_a_motion_that_cannot_be_written_leaves_nothing(walk_path: Path, tmp_path: Path) -> None:
     motion = gmr.read(walk_path)
     for place, said in (
         (tmp_path / "nowhere" / "walk.bvh", "make it first"),
         (tmp_path, "this is a folder; name a file in it"),
-        (tmp_path / "walk.fbx", "is none that gmr knows"),
+        (tmp_path / "walk.fbx", r"none that gmr writes \(\.bvh, \.amc, \.asf, \.gmr, \.gmrb, \.glb, \.x3d\)"),
     ):
         with pytest.raises(GmrError, match=said):
             gmr.write(motion, place)

@@ -53,16 +53,19 @@ class Description:
     height: float | None
     up_guess: UpGuess | None
     leading_rest_frames: int
+    asf: str | None
+    """The file that an AMC's skeleton is in."""
     oddities: tuple[str, ...]
     """One sentence for each thing that is unusual."""
 
 
-def describe(motion: Motion, warnings: Sequence[str] = ()) -> Description:
+def describe(motion: Motion, warnings: Sequence[str] = (), asf: str | None = None) -> Description:
     """What is in ``motion`` and what is odd about it.
 
     Args:
         motion: any.
         warnings: what reading it warned of; these come first among the oddities.
+        asf: the file that its skeleton was read from, where that is another.
     """
     skeleton = motion.skeleton
     body = guess_body(motion)
@@ -86,6 +89,7 @@ def describe(motion: Motion, warnings: Sequence[str] = ()) -> Description:
         height=body.height,
         up_guess=body.up,
         leading_rest_frames=rest,
+        asf=asf,
         oddities=(*warnings, *_oddities(motion, rest, body.up)),
     )
 

@@ -17,6 +17,7 @@ from gmr.errors import FormatWarning, GmrError
 from gmr.unbuffered import Whole
 
 if TYPE_CHECKING:
+    from gmr.formats.registry import Format
     from gmr.motion import Motion
 
 __all__ = [
@@ -38,6 +39,9 @@ Item = TypeVar("Item")
 
 STDIO = "-"
 INTERRUPTED = 130
+
+_bars: list[object] = []
+"""Bars on stderr that have not come to their ends."""
 
 
 def finished(command: click.Command, args: list[str] | None = None) -> int:
@@ -101,8 +105,9 @@ def _with_whole_writes(stream: TextIO) -> TextIO:
 
 
 def say(sentence: str) -> None:
-    """One sentence on stderr."""
-    click.echo(f"gmr: {sentence}", err=True)
+    """One sentence on stderr, in the place of a bar that has not come to its end; the bar goes on below."""
+    rewind = "\r\x1b[K" if _bars else ""
+    click.echo(f"{rewind}gmr: {sentence}", err=True)
 
 
 class Unit(click.ParamType[float]):
@@ -175,20 +180,24 @@ class Failures:
 
 
 def files_of(path: str) -> list[Path | str]:
-    """The files that an argument means: itself, ``-``, or for a folder all motions in it.
+    """The files that an argument means: itself, ``-``, or for a folder all motions in it; recordings of
+    markers in it are said to be left out.
 
     Raises:
         GmrError: a folder without motions.
     """
     if path == STDIO or not Path(path).is_dir():
         return [path]
-    from gmr.formats import motion_files
+    from gmr.formats.folder import left_out_markers, motion_files
     from gmr.formats.registry import suffixes
 
-    found = motion_files(path)
+    found, left_out = motion_files(path), left_out_markers(path)
     if not found:
         known = ", ".join(suffixes("motion"))
-        raise GmrError(f"{path}: no motion in this folder or those below ({known})")
+        nothing = f"{path}: no motion in this folder or those below ({known})"
+        raise GmrError(f"{nothing}; {left_out}" if left_out else nothing)
+    if left_out:
+        say(f"{path}: {left_out}")
     return [Path(path, file) for file in found]
 
 
@@ -225,7 +234,11 @@ def progress(items: Iterable[Item], label: str) -> Iterator[Iterable[Item]]:
         yield held
         return
     with click.progressbar(held, label=label, file=sys.stderr) as bar:
-        yield bar
+        _bars.append(bar)
+        try:
+            yield bar
+        finally:
+            _bars.remove(bar)
 
 
 @contextmanager
@@ -240,7 +253,12 @@ def naming(motion: Motion) -> Iterator[None]:
 
 
 def write_output(motion: Motion, out: Path | str, format: str | None = None) -> list[str]:
-    """Writes a motion, by suffix; ``-`` is standard output, in ``format``. Makes folders where none are.
+    """Writes a motion. Makes folders where none are.
+
+    Args:
+        motion: what to write.
+        out: a file, or ``-`` for standard output.
+        format: the name of the format to write; None: told by the suffix, and BVH for ``-``.
 
     Returns:
         The file that was written beside, if one was.
@@ -254,21 +272,34 @@ def write_output(motion: Motion, out: Path | str, format: str | None = None) -> 
 
 
 def _written(motion: Motion, out: Path | str, format: str | None) -> list[str]:
+    from gmr.cli.lost_roots import lost_roots
     from gmr.formats import write
-    from gmr.formats.registry import format_of_file
+    from gmr.formats.registry import FORMATS, format_of_file, named_format
 
+    if format is not None:
+        chosen = named_format(format)
+    else:
+        chosen = FORMATS[0] if out == STDIO else format_of_file(str(out), written=True)
     if out == STDIO:
-        write(motion, sys.stdout.buffer, format)
+        write(motion, sys.stdout.buffer, chosen.name)
         sys.stdout.buffer.flush()
-        return []
+        second = None
+    else:
+        _write_file(motion, out, chosen)
+        second = chosen.place_beside(Path(out))
+    if lost := lost_roots(motion, chosen):
+        say(f"{'standard output' if out == STDIO else out}: {lost}")
+    if chosen.name == "ASF" and out != STDIO and motion.frame_count:
+        say(f"{out} holds the skeleton alone; write an .amc for the frames")
+    return [] if second is None else [str(second)]
+
+
+def _write_file(motion: Motion, out: Path | str, chosen: Format) -> None:
+    from gmr.formats import write
+
     if isinstance(out, Path):
         try:
             out.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise GmrError(f"{out}: its folder cannot be made: {error.strerror}") from error
-    write(motion, out)
-    chosen = format_of_file(str(out))
-    if chosen.name == "ASF" and motion.frame_count:
-        say(f"{out} holds the skeleton alone; write an .amc for the frames")
-    second = chosen.place_beside(Path(out))
-    return [] if second is None else [str(second)]
+    write(motion, out, chosen.name)

@@ -177,10 +177,15 @@ def _is_in_metres(job: Job) -> bool:
 
 
 def _fitted(found: Motion | Markers, fitting: Fitting, report: _Report) -> Motion:
-    """The motion that was read, or that is made of the markers that were."""
+    """The motion that was read, or that is made of the markers that were.
+
+    Raises:
+        UsageError: a motion was read, and options for markers are given.
+    """
     from gmr.markers import Markers
 
     if not isinstance(found, Markers):
+        fitting.check_unneeded(found)
         return found
     report.fitted = True
     return fitting.motion(found)

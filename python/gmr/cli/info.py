@@ -123,7 +123,17 @@ def _describe(
     if isinstance(read, Markers):
         recordings[str(path)] = describe_markers(read, odd, relation)
     else:
-        found[str(path)] = describe(read, odd)
+        found[str(path)] = describe(read, odd, _skeleton_of(read, options["asf"]))
+
+
+def _skeleton_of(motion: Motion, asf: str | None) -> str | None:
+    """The ASF that the skeleton of an AMC was read from; None for other motions, and for an ASF alone."""
+    from gmr.dof_rows import DofRows
+    from gmr.formats.asf_finder import asf_beside
+
+    if not isinstance(motion.source, DofRows) or not motion.frame_count:
+        return None
+    return str(asf_beside(motion.name)) if asf is None else asf
 
 
 def _without_place(warning: str, name: str | None) -> str:

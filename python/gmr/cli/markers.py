@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
@@ -26,6 +26,19 @@ FEW: Final = 6
 """Names, gaps or parts that a line lists; the others it counts."""
 
 
+class Picture(click.ParamType[Path]):
+    """Where to draw an SVG."""
+
+    name = "FILE.svg"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """The place."""
+        path = Path(value)
+        if path.suffix.lower() != ".svg":
+            self.fail(f"the picture is an SVG; give a name that ends with .svg, not '{value}'", param, ctx)
+        return path
+
+
 @dataclass(frozen=True)
 class Fitting:
     """How markers are to become a motion.
@@ -38,6 +51,7 @@ class Fitting:
         known_only: whether only the longest stretch is written in which all parts are known.
         picture: where to draw a film strip; None: nowhere.
         as_json: whether the report of the fit is printed as JSON.
+        given: the options on the command line that say nothing of other inputs.
     """
 
     relation: str | None
@@ -45,8 +59,23 @@ class Fitting:
     max_gap: float
     undo_swaps: bool
     known_only: bool
-    picture: str | None
+    picture: Path | None
     as_json: bool
+    given: tuple[str, ...] = ()
+
+    def check_unneeded(self, motion: Motion) -> None:
+        """Refuses options for markers where the input is a motion already.
+
+        Raises:
+            UsageError: some were given.
+        """
+        if self.given:
+            alone = len(self.given) == 1
+            what = (
+                f"{listed(self.given, FEW)} {'is' if alone else 'are'} for recordings of markers (C3D) only"
+            )
+            advice = f"leave {'it' if alone else 'them'} out"
+            raise click.UsageError(f"{what}, but '{motion.name}' holds a motion; {advice}")
 
     def motion(self, markers: Markers) -> Motion:
         """The motion that a recording becomes; what there is to say of it is said.
@@ -64,7 +93,7 @@ class Fitting:
         else:
             _say_fit(fit)
         if self.picture is not None:
-            _draw(fit, Path(self.picture))
+            _draw(fit, self.picture)
         return _known(fit, self.known_only)
 
 
@@ -81,20 +110,32 @@ def fitting_options(command: Command) -> Command:
         click.option("--undo-swaps", is_flag=True, help="C3D: put exchanged labels right first."),
         click.option("--known-only", is_flag=True,
                      help="C3D: write only the longest stretch in which every part is known."),
-        click.option("--picture", metavar="FILE.svg", help="C3D: draw markers and skeleton in some frames."),
+        click.option("--picture", type=Picture(), metavar="FILE.svg",
+                     help="C3D: draw markers and skeleton in some frames."),
         click.option("--json", "as_json", is_flag=True, help="Print JSON: which files were written and which "
                      "failed; for C3D, how well the markers fit."),
     )  # fmt: skip
 
     @functools.wraps(command)
     def taking(**values: Any) -> Any:
-        keys = ("relation", "subject", "max_gap", "undo_swaps", "known_only", "picture", "as_json")
-        return command(fitting=Fitting(**{key: values.pop(key) for key in keys}), **values)
+        keys = ("relation", "subject", "max_gap", "undo_swaps", "known_only", "picture")
+        chosen = {key: values.pop(key) for key in keys}
+        fitting = Fitting(**chosen, as_json=values.pop("as_json"), given=_given(keys))
+        return command(fitting=fitting, **values)
 
     wrapped: Any = taking
     for option in reversed(options):
         wrapped = option(wrapped)
     return wrapped  # type: ignore[no-any-return]
+
+
+def _given(keys: tuple[str, ...]) -> tuple[str, ...]:
+    """Those of the options that were not left to their defaults, as they are written."""
+    context = click.get_current_context()
+    default = click.core.ParameterSource.DEFAULT
+    return tuple(
+        f"--{key.replace('_', '-')}" for key in keys if context.get_parameter_source(key) is not default
+    )
 
 
 def marker_page(path: str, of: MarkerDescription) -> str:
@@ -173,9 +214,22 @@ def _say_fit(fit: MarkerFit) -> None:
         say(f"{name}: {note}")
     for part, why in report.left_out.items():
         say(f"{name}: {part} is left out: {why}")
+    if report.missing:
+        verb = "is" if len(report.missing) == 1 else "are"
+        say(f"{name}: {_missing(report.missing)} {verb} not in the recording")
     bridged = sum(stretch.became == "bridged" for part in report.parts for stretch in part.stretches)
     if bridged:
         say(f"{name}: {bridged} short stretches in which a part is not seen are bridged")
+
+
+def _missing(missing: Mapping[str, tuple[str, ...]]) -> str:
+    """Markers of a relation that are not there; first those that are nearly called as one that is, for these
+    may be misspelt."""
+    each = [
+        f"'{label}'" + (f" (did you mean {quoted(near, 2)}?)" if near else "")
+        for label, near in sorted(missing.items(), key=lambda entry: not entry[1])
+    ]
+    return listed(each, FEW)
 
 
 def _known(fit: MarkerFit, known_only: bool) -> Motion:

@@ -25,6 +25,7 @@ def page(path: str, of: Description) -> str:
     lines = [
         ("frames", _frames(of)),
         ("joints", _joints(of)),
+        ("skeleton", of.asf or ""),
         ("roots", listed(of.roots, FEW) or "none"),
         ("moved", listed(of.configuration, FEW)),
         ("dummies", listed(of.dummies, 12) or "none"),
@@ -102,6 +103,7 @@ def overview(found: Mapping[str, Description]) -> str:
     lines += ["", f"{len(found)} motions in {base or '.'}: {frames:,} frames, {seconds:,.1f} s"]
     lines += _shared("unit", found, shown, lambda of: [_unit(of)])
     lines += _shared("up", found, shown, lambda of: [_up(of) or "unknown"])
+    lines += _shared("skeleton", found, shown, lambda of: [of.asf] if of.asf else [])
     lines += _shared("roots", found, shown, lambda of: [listed(of.roots, FEW) or "none"])
     lines += _shared("dummies", found, shown, lambda of: [listed(of.dummies, 12) or "none"])
     lines += _shared("odd", found, shown, lambda of: of.oddities)

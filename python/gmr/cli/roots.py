@@ -90,7 +90,7 @@ def roots(
         for joint in shifts or ():
             motion = motion.shift_root(joint)
     if target is not None:
-        for second in write_output(motion, target, format="gmr"):
+        for second in write_output(motion, target, "gmr" if target == STDIO else None):
             say(f"the skeleton is in {second}")
     if target != STDIO:
         _print(motion, file, target, as_json)
@@ -112,7 +112,7 @@ def _target(file: str, out: str | None) -> Path | str:
     if out == STDIO:
         return STDIO
     try:
-        format_of_file(out)
+        format_of_file(out, written=True)
     except FormatError as error:
         raise click.UsageError(str(error)) from error
     return Path(out)

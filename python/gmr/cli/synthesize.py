@@ -141,7 +141,7 @@ def synthesize(
     if strip is not None:
         _draw(take, strip)
     if out is not None:
-        beside = write_output(take.motion, out if out == STDIO else Path(out), "BVH")
+        beside = write_output(take.motion, out if out == STDIO else Path(out))
         say(f"{out}: {take.motion.frame_count} frames, {take.performance.seconds:.3g} s of '{action}'")
         for file in beside:
             say(f"{file} was written beside")

@@ -25,7 +25,7 @@ class Job:
     Args:
         source: a file, or ``-``.
         out: a file, or ``-``.
-        format: the name of the format to write; None: the suffix of ``out`` tells it.
+        format: the name of the format to write, whatever the suffix of ``out``; None: the suffix tells it.
     """
 
     source: Path | str
@@ -43,12 +43,12 @@ class Written(click.ParamType["Format"]):
         from gmr.errors import GmrError
         from gmr.formats.registry import FORMATS, named_format
 
+        others = ", ".join(known.name.lower() for known in FORMATS if known.writer)
         try:
             found = named_format(value)
-        except GmrError as error:
-            self.fail(str(error), param, ctx)
+        except GmrError:
+            self.fail(f"there is no format '{value}'; write one of: {others}", param, ctx)
         if found.writer is None:
-            others = ", ".join(known.name.lower() for known in FORMATS if known.writer)
             self.fail(f"gmr reads {found.name} but does not write it; write one of: {others}", param, ctx)
         return found
 
@@ -73,14 +73,15 @@ def jobs_of(source: str, target: str, to: Format | None) -> list[Job]:
         ]
         _check_places(jobs)
         return jobs
+    asked = None if to is None else to.name
     if target == STDIO:
-        return [Job(source, target, None if to is None else to.name)]
+        return [Job(source, target, asked)]
     if Path(target).is_dir():
         if source == STDIO:
             raise click.UsageError(f"'{target}' is a folder; name the file to write")
         return [Job(source, _place(Path(target, Path(source).name), to))]
     _check_suffix(target, to)
-    return [Job(source, target)]
+    return [Job(source, target, asked)]
 
 
 def _place(path: Path, to: Format | None) -> Path:
@@ -104,12 +105,16 @@ def _check_folder(source: str, target: str) -> None:
 
 
 def _check_suffix(target: str, to: Format | None) -> None:
-    """Refuses a place that no format has the suffix of, or another format than the one asked for."""
+    """Refuses a place whose suffix is of another format than the one asked for; or, where none is asked for,
+    of none that gmr writes."""
     from gmr.errors import FormatError
-    from gmr.formats.registry import format_of_file
+    from gmr.formats.registry import FORMATS, format_of_file
 
+    told = any(Path(target).suffix.lower() in known.suffixes for known in FORMATS)
+    if to is not None and not told:
+        return
     try:
-        found = format_of_file(target)
+        found = format_of_file(target, written=True)
     except FormatError as error:
         raise click.UsageError(str(error)) from error
     if to not in (None, found):

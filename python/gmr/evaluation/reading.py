@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 from gmr.errors import DatasetError, FormatWarning
 from gmr.evaluation.words import some_of
-from gmr.formats.folder import read_folder
+from gmr.formats.folder import left_out_markers, read_folder
 from gmr.formats.registry import suffixes
 from gmr.motion import Motion
 
@@ -78,10 +78,10 @@ def _no_motion(folder: str | os.PathLike[str], failed: Mapping[str, GmrError]) -
         return (
             f"none of the {len(failed)} motion files of {os.fspath(folder)} could be read; the first: {first}"
         )
-    return (
-        f"{os.fspath(folder)} holds no motion files ({some_of(suffixes(), 10)}), nor do the folders in it; "
-        "give the folder that the clips are in"
-    )
+    nothing = f"{os.fspath(folder)} holds no motion files ({some_of(suffixes('motion'), 10)})"
+    if left_out := left_out_markers(folder):
+        return f"{nothing}; {left_out}"
+    return f"{nothing}, nor do the folders in it; give the folder that the clips are in"
 
 
 def printable(text: str) -> str:

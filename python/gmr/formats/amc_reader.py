@@ -54,8 +54,8 @@ def read_amc(
     Args:
         data: the file's bytes: UTF-8, or UTF-16 with a byte order mark.
         name: the file's path, for errors, for the motion, and to find the ASF beside.
-        strict: raise where a warning would do: bones missing in a frame, frame numbers that skip, a last
-            frame that is cut off, keywords that gmr does not know.
+        strict: raise where a warning would do: an ASF found for a stream, bones missing in a frame, frame
+            numbers that skip, a last frame that is cut off, keywords that gmr does not know.
         asf: the skeleton, as a path or the bytes of a file; None: the file beside, see
             :func:`gmr.formats.asf_finder.find_asf`.
         fps: frames a second; None: as ``:SAMPLES-PER-SECOND`` says, else 120 as in the CMU database, for the
@@ -67,6 +67,9 @@ def read_amc(
     asf_name, asf_data = asf_contents(asf, name)
     acclaim = parse_asf(asf_data, name=asf_name, strict=strict)
     text = Text(_in_utf8(bytes(data)), name=name, strict=strict)
+    if asf is None and name is not None and not Path(name).exists():
+        # A stream has no place, so that what lies in the working folder may well be another's.
+        text.odd(f"its skeleton is taken from {asf_name}, for none is named. Name it: asf=..., or --asf.")
     notes = leading_comments(text)
     head = _read_head(text, acclaim.radians)
     rows, listed, first = _read_frames(text, acclaim, asf_name)

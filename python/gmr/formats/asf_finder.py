@@ -8,7 +8,7 @@ from pathlib import Path, PurePath
 
 from gmr.errors import FormatError
 
-__all__ = ["asf_contents", "find_asf", "serving_asf"]
+__all__ = ["asf_beside", "asf_contents", "find_asf", "serving_asf"]
 
 
 def find_asf(amc: str, beside: Iterable[str]) -> str | None:
@@ -49,7 +49,7 @@ def asf_contents(asf: str | os.PathLike[str] | bytes | None, amc: str | None) ->
     """
     if isinstance(asf, bytes | bytearray | memoryview):
         return None, bytes(asf)
-    path = _found_beside(amc) if asf is None else Path(asf)
+    path = asf_beside(amc) if asf is None else Path(asf)
     try:
         return str(path), path.read_bytes()
     except OSError as error:
@@ -57,7 +57,12 @@ def asf_contents(asf: str | os.PathLike[str] | bytes | None, amc: str | None) ->
         raise FormatError(what, file=str(path)) from error
 
 
-def _found_beside(amc: str | None) -> Path:
+def asf_beside(amc: str | None) -> Path:
+    """The ASF that is found beside ``amc``.
+
+    Raises:
+        FormatError: there is none; what was tried is said.
+    """
     if amc is None:
         raise FormatError("an AMC needs its skeleton: give its ASF, a path or bytes, as asf=...")
     folder = Path(amc).parent

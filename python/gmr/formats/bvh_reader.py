@@ -42,9 +42,9 @@ def read_bvh(
         raise ValueError(f"positions={positions!r} is not known; use 'replace' or 'add'")
     text = Text(bytes(data), name=name, strict=strict)
     shape = read_shape(text, adds_offset=positions == "add")
-    frames, frame_time = read_timing(text)
-    rows = read_rows(text, shape.layout.column_count, lambda column: _channel(shape, column), frames)
-    return Motion.from_rows(shape.skeleton, shape.layout, rows, frame_time, name=name)
+    timing = read_timing(text)
+    rows = read_rows(text, shape.layout.column_count, lambda column: _channel(shape, column), timing)
+    return Motion.from_rows(shape.skeleton, shape.layout, rows, timing.frame_time, name=name)
 
 
 def _channel(shape: Shape, column: int) -> str:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,7 @@ from gmr.frames import Pose, Rows
 from gmr.motion import Motion
 from gmr.skeleton import Skeleton
 
-__all__ = ["check", "kept", "off_length", "side_by_side"]
+__all__ = ["OffLength", "check", "kept", "off_length", "side_by_side"]
 
 _FORM = "a GMR file"
 
@@ -79,16 +80,30 @@ def check(motion: Motion) -> None:
             raise unsayable(motion, who, values[frame, column], frame, _FORM)
 
 
-def off_length(pose: Pose) -> str | None:
-    """Quaternions that are not of length 1, in words; None where all are.
+class OffLength(NamedTuple):
+    """Quaternions that are not of length 1.
+
+    Args:
+        quaternions: how many.
+        frame: the first frame that has one, from 0.
+    """
+
+    quaternions: int
+    frame: int
+
+    def __str__(self) -> str:
+        return f"{self.quaternions:,} quaternions are not of length 1, the first in frame {self.frame}"
+
+
+def off_length(pose: Pose) -> OffLength | None:
+    """Quaternions that are not of length 1; None where all are.
 
     They would stretch bones. How far the squared length may be off: :data:`_OFF_LENGTH`.
     """
     off = np.abs(np.einsum("fsc,fsc->fs", pose.rotations, pose.rotations) - 1) > _OFF_LENGTH
     if not off.any():
         return None
-    frame = int(np.argwhere(off)[0][0])
-    return f"{off.sum():,} quaternions are not of length 1, the first in frame {frame}"
+    return OffLength(int(off.sum()), int(np.argwhere(off)[0][0]))
 
 
 def side_by_side(array: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ from gmr.formats.gmr_content import off_length
 from gmr.formats.gmr_joints import Joints
 from gmr.formats.gmr_trees import TreesError
 from gmr.formats.numerals import number, why_no_number
-from gmr.formats.rows import read_rows
+from gmr.formats.rows import place_of_row, read_rows
 from gmr.formats.text import Text, shown
 from gmr.formats.timing import read_timing
 from gmr.frames import Pose, Rows
@@ -49,16 +49,17 @@ def read_gmr_text(data: bytes, *, name: str | None = None, strict: bool = False)
         raise text.failure(
             "the file ends before MOTION. It may be cut off: write it again.", expected="MOTION"
         )
-    frames, frame_time = read_timing(text)
-    rows = read_rows(text, sum(map(len, joints.channels)), joints.channel, frames)
+    timing, columns = read_timing(text), sum(map(len, joints.channels))
+    rows = read_rows(text, columns, joints.channel, timing)
     if isinstance(reading, Columns):
         assert layout is not None
         source: Rows | Pose = Rows(read_only(_ordered(rows, reading)), layout)
     else:
         source = reading.pose(rows, layout)
         if off := off_length(source):
-            text.odd(f"{off}; read as they are. Divide them by their lengths.")
-    return Motion(skeleton, frame_time, source, header.unit, name)
+            at = place_of_row(text, columns, off.frame)
+            text.odd(f"{off}; read as they are. Divide them by their lengths.", at=at)
+    return Motion(skeleton, timing.frame_time, source, header.unit, name)
 
 
 def _reading(

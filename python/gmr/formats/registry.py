@@ -38,6 +38,8 @@ class Format:
         is_mapped: the reader takes the map of a file in memory as well as its bytes.
         holds: what is in its files; folders are searched for motions only.
         in_metres: lengths are in metres whatever the unit of the motion is.
+        roots: which roots it can keep: all; the "joined" ones, which were not split off; or the "first",
+            those from before any was moved.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Format:
     is_mapped: bool = False
     holds: Literal["motion", "markers"] = "motion"
     in_metres: bool = False
+    roots: Literal["all", "joined", "first"] = "joined"
 
     @property
     def is_text(self) -> bool:
@@ -83,10 +86,19 @@ class Format:
         Raises:
             FormatError: gmr reads the format but does not write it.
         """
-        if self.writer is None:
-            others = ", ".join(suffix for known in FORMATS if known.writer for suffix in known.suffixes)
-            raise FormatError(f"gmr reads {self.name} but does not write it; write one of: {others}")
+        self.check_written(None)
+        assert self.writer is not None
         return self._pieces(self.writer, motion)
+
+    def check_written(self, file: str | None) -> None:
+        """Refuses to write ``file`` where gmr only reads the format.
+
+        Raises:
+            FormatError: it does.
+        """
+        if self.writer is None:
+            what = f"gmr reads {self.name} but does not write it; write one of: {_written_suffixes()}"
+            raise FormatError(what, file=file)
 
     def write_beside(self, motion: Motion) -> Iterable[bytes | memoryview]:
         """The pieces, in order, of the second file."""
@@ -134,10 +146,12 @@ FORMATS: Final = (
         "gmr.formats.asf_amc", "read_asf", "asf_chunks",
         serving="serving_asf",
     ),
-    Format("GMR", (".gmr",), (b"GMR",), "gmr.formats.gmr", "read_gmr", "gmr_chunks", is_mapped=True),
+    Format(
+        "GMR", (".gmr",), (b"GMR",), "gmr.formats.gmr", "read_gmr", "gmr_chunks", is_mapped=True, roots="all",
+    ),
     Format(
         "GMRB", (".gmrb",), (b'{"__metadata__":',), "gmr.formats.gmr", "read_gmr", "gmrb_pieces",
-        begins_at=8, is_mapped=True,
+        begins_at=8, is_mapped=True, roots="all",
     ),
     Format("C3D", (".c3d",), (b"\x02P",), "gmr.formats.c3d", "read_c3d", None, begins_at=0, holds="markers"),
     Format(
@@ -145,7 +159,10 @@ FORMATS: Final = (
         options=("animation", "fps"), begins_at=0, in_metres=True,
     ),
     Format("glTF", (".gltf",), (b"{",), "gmr.formats.gltf", "read_gltf", None, options=("animation", "fps")),
-    Format("X3D", (".x3d",), (b"<?XML", b"<X3D"), "gmr.formats.x3d", None, "x3d_chunks", in_metres=True),
+    Format(
+        "X3D", (".x3d",), (b"<?XML", b"<X3D"), "gmr.formats.x3d", None, "x3d_chunks",
+        in_metres=True, roots="first",
+    ),
 )  # fmt: skip
 
 
@@ -169,23 +186,40 @@ def named_format(name: str) -> Format:
     raise FormatError(f"there is no format '{name}'; use one of: {names}")
 
 
-def format_of_file(file: str) -> Format:
+def format_of_file(file: str, *, written: bool = False) -> Format:
     """The format that the suffix of ``file`` tells.
 
+    Args:
+        file: its name.
+        written: it is to be written; otherwise read.
+
     Raises:
-        FormatError: no format has it.
+        FormatError: no format has it, or the file is to be written and gmr only reads its format.
     """
     suffix = PurePath(file).suffix.lower()
     for known in FORMATS:
         if suffix in known.suffixes:
+            if written:
+                known.check_written(file)
             return known
     found = f"the suffix '{suffix}' is" if suffix else "a name without a suffix is"
-    listed = ", ".join(known for each in FORMATS for known in each.suffixes)
-    raise FormatError(
-        f"{found} none that gmr knows ({listed}). Rename the file; or name its format in "
-        f"Python (format='{FORMATS[0].name.lower()}'), or put - in its place on the command line.",
-        file=file,
-    )
+    example = f"format='{FORMATS[0].name.lower()}'"
+    if written:
+        what = (
+            f"{found} none that gmr writes ({_written_suffixes()}). Give the file one of these; or name its "
+        )
+        what += f"format, in Python ({example}) or for gmr convert (--to {FORMATS[0].name.lower()})."
+    else:
+        what = (
+            f"{found} none that gmr reads ({', '.join(suffixes())}). Rename the file; or name its format in "
+        )
+        what += f"Python ({example}), or put - in its place on the command line."
+    raise FormatError(what, file=file)
+
+
+def _written_suffixes() -> str:
+    """Suffixes of files that gmr writes, with commas between them."""
+    return ", ".join(suffix for known in FORMATS if known.writer for suffix in known.suffixes)
 
 
 def format_of_text(data: bytes, file: str | None) -> Format:

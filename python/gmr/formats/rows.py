@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -12,41 +13,52 @@ from gmr import _core
 from gmr.errors import FormatError
 from gmr.formats.numerals import why_no_number
 from gmr.formats.text import Text
+from gmr.formats.timing import Timing
 
-__all__ = ["read_rows"]
+__all__ = ["place_of_row", "read_rows"]
 
+_SOMETHING = re.compile(rb"\S")
 _MOST_COUNTED = 1 << 16
 """Bytes of a line in which superfluous numbers are counted."""
 
 
-def read_rows(text: Text, columns: int, channel: Callable[[int], str], declared: int) -> NDArray[np.float64]:
+def read_rows(text: Text, columns: int, channel: Callable[[int], str], timing: Timing) -> NDArray[np.float64]:
     """Reads (F, C) rows, read-only: as many as are declared, or those that are there.
 
     Args:
         text: at the first row.
         columns: C.
         channel: what a column is, for errors: its joint and the channel's name.
-        declared: how many rows the file says there are.
+        timing: how many rows the file says there are, and where.
 
     Raises:
         FormatError: a row is wrong; its line, joint and channel are named. Frames count from 0.
     """
+    declared = timing.frames
     rows, end, found = _core.parse_rows(text.data, text.at, columns, min(declared, len(text.data)))
     rows.flags.writeable = False
     fault = _Fault(*found) if found else None
-    plural = " is" if declared == 1 else "s are"
     if fault and fault.kind != "cut":
         raise _failure(text, columns, channel, fault)
     if fault:
         what = f"the file ends inside frame {fault.row}, after {fault.field} of its {columns} numbers"
         text.odd(f"{what}; the frame is left out. Export the file again for the rest.", at=fault.start)
     elif len(rows) < declared:
-        what = f"{declared:,} frame{plural} declared, but {len(rows):,} are there"
-        text.odd(f"{what}. Correct the count after 'Frames:', or export the file again.")
+        what = f"{timing.said} declared, but {len(rows):,} are there"
+        text.odd(f"{what}. Correct the count after 'Frames:', or export the file again.", at=timing.at)
     elif more := _core.count_rows(text.data, end):
-        what = f"{declared:,} frame{plural} declared, but {declared + more:,} rows are there"
-        text.odd(f"{what}. The last are left out; correct the count after 'Frames:' to read them.")
+        what = f"{timing.said} declared, but {declared + more:,} rows are there"
+        text.odd(
+            f"{what}. The last are left out; correct the count after 'Frames:' to read them.", at=timing.at
+        )
     return rows
+
+
+def place_of_row(text: Text, columns: int, row: int) -> int:
+    """The byte at which a row begins that :func:`read_rows` would read; ``text`` is at the first."""
+    _, end, _ = _core.parse_rows(text.data, text.at, columns, row)
+    begin = _SOMETHING.search(text.data, end)
+    return begin.start() if begin else end
 
 
 class _Fault(NamedTuple):

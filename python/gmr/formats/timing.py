@@ -3,35 +3,57 @@
 from __future__ import annotations
 
 import re
+from typing import Final, NamedTuple
 
 from gmr.formats.numerals import number, why_no_number
 from gmr.formats.text import Text, shown
 
-__all__ = ["read_timing"]
+__all__ = ["Timing", "read_timing"]
 
 _FRAMES = re.compile(rb"\s*+Frames\s*+:?[^\S\r\n]*+(\S*)", re.IGNORECASE)
 _FRAME_TIME = re.compile(rb"\s*+Frame\s*+Time\s*+:?[^\S\r\n]*+(\S*)", re.IGNORECASE)
-_MOST_FRAMES = 10**18
-"""A count of more digits is taken for this; no file holds as many."""
+_MOST_FRAMES: Final = 10**18
+"""A count of as many digits or more is taken for this; no file holds as many."""
 
 
-def read_timing(text: Text) -> tuple[int, float]:
-    """Reads from MOTION to the frame time: the declared count, and seconds."""
+class Timing(NamedTuple):
+    """How many frames there are, and how long each is.
+
+    Args:
+        frames: as many as are declared.
+        frame_time: seconds.
+        at: the byte after the count, in the line to blame where it is wrong.
+    """
+
+    frames: int
+    frame_time: float
+    at: int
+
+    @property
+    def said(self) -> str:
+        """The count in words, as the subject of a sentence that goes on with what they are."""
+        least = "at least " if self.frames == _MOST_FRAMES else ""
+        return f"{least}{self.frames:,} frame{' is' if self.frames == 1 else 's are'}"
+
+
+def read_timing(text: Text) -> Timing:
+    """Reads from MOTION to the frame time."""
     word = text.take()
     if not word:
         text.odd("the file has no MOTION; read as a skeleton without frames. Export it again for its frames.")
-        return 0, 0.0
+        return Timing(0, 0.0, text.at)
     if word.upper() != b"MOTION":
         what = f"{shown(word)} follows the last joint. Write MOTION there, or ROOT for another tree."
         if word == b"}":
             what = "there is one '}' too many. Remove it, or write the '{' that is missing."
         raise text.failure(what, at=text.at - len(word), expected="MOTION", column=True)
-    frames, frame_time = _frame_count(text), _frame_time(text)
+    frames, at = _frame_count(text), text.at
+    frame_time = _frame_time(text)
     if frame_time == 0 and frames > 1:
         text.odd(
             "the frame time is 0, so that the frames have no duration. Write seconds after 'Frame Time:'."
         )
-    return frames, frame_time
+    return Timing(frames, frame_time, at)
 
 
 def _frame_count(text: Text) -> int:

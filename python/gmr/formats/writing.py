@@ -36,7 +36,7 @@ def write(motion: Motion, target: Target, format: str | None = None) -> None:
 
     Raises:
         GmrError: the file cannot be written; what was there is untouched.
-        FormatError: no format has that suffix.
+        FormatError: no format that gmr writes has that suffix or is called so.
         SkeletonError: the format cannot hold this motion.
     """
     from gmr.motion import Motion
@@ -47,7 +47,11 @@ def write(motion: Motion, target: Target, format: str | None = None) -> None:
         path = Path(target)
         if os.path.isdir(path):  # noqa: PTH112  (a folder that may not be looked into is none here)
             raise GmrError(f"{path}: this is a folder; name a file in it")
-        chosen = format_of_file(str(path)) if format is None else named_format(format)
+        if format is None:
+            chosen = format_of_file(str(path), written=True)
+        else:
+            chosen = named_format(format)
+            chosen.check_written(str(path))
         _write_file(motion, path, chosen)
         return
     if not hasattr(target, "write"):

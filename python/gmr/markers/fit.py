@@ -115,11 +115,13 @@ def fit(
             so that every part is where it was fitted.
 
     Raises:
-        GmrError: the unit is unknown; the relation does not fit the labels; no part is seen. Says what to do.
+        GmrError: there are no markers; the unit is unknown; the relation does not fit the labels; no part is
+            seen. Says what to do.
     """
     if bones not in ("constant", "measured"):
         raise ValueError(f"bones='{bones}' is not known; use 'constant' or 'measured'")
     name = markers.name or "the recording"
+    _check_markers(markers)
     if markers.unit is None:
         raise GmrError(f"{name} does not say in what unit it is; declare it first: markers.with_unit('mm')")
     if not markers.frame_count:
@@ -146,6 +148,16 @@ def fit(
         name=markers.name,
     )
     return MarkerFit(motion, turned, chosen, match, segments, left_out, stretches, tuple(notes))
+
+
+def _check_markers(markers: Markers) -> None:
+    """Refuses a recording without markers; what it holds instead is said."""
+    if not markers.labels:
+        only = f", only {' and '.join(markers.ignored)}" if markers.ignored else ""
+        raise GmrError(
+            f"{markers.name or 'the recording'}: it holds no markers{only}, and a motion is made of markers. "
+            "Export the places of the markers too."
+        )
 
 
 def _chosen(markers: Markers, wanted: Relation | str | Path | None) -> Relation:
