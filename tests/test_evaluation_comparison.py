@@ -223,7 +223,7 @@ def test_figures_are_written_for_each_dataset_and_for_all(
     )
     written = compared.write_figures(tmp_path / "figures")
     names = {path.relative_to(tmp_path / "figures").as_posix() for path in written}
-    assert names == {"compared_trials.svg"} | {
+    assert names == {"compared_trials.svg", "compared_coverage.svg"} | {
         f"{each}/{name}.svg" for each in ("one", "two") for name in few
     }
     assert all(path.read_text(encoding="utf-8").startswith("<svg") for path in written)

@@ -39,8 +39,11 @@ def run(*arguments: object) -> int:
 def test_the_smaller_dataset_is_written_and_the_report_shows_why(
     folder: Path, tmp_path: Path, capsys: Captured
 ) -> None:
-    out, report = tmp_path / "new" / "smaller", tmp_path / "report.html"
-    assert run(folder, *SMALL, "--prune", "30%", "--prune-out", out, "-o", report) == 0
+    pytest.importorskip("vl_convert")
+    out, report, figures = tmp_path / "new" / "smaller", tmp_path / "report.html", tmp_path / "figures"
+    written = ("--prune-out", out, "-o", report, "--figures", figures)
+    assert run(folder, *SMALL, "--prune", "30%", *written) == 0
+    assert {"coverage_scatter", "pruning_offset"} <= {path.stem for path in figures.iterdir()}
     said = capsys.readouterr()
     assert "of the seconds can go, and every trial stays the same, bit by bit." in " ".join(said.out.split())
     assert f"Smaller dataset: {out}" in said.out

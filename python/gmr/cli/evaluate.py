@@ -254,6 +254,8 @@ def _write(
     sections: Sequence[Section],
 ) -> dict[str, Any]:
     """Write what was asked for; the answer says where it lies."""
+    from gmr.evaluation.comparison import Comparison
+
     written: dict[str, Any] = {}
     if tables is not None:
         phases.tell("writing tables", 0, 1)
@@ -264,11 +266,11 @@ def _write(
     if figures is not None:
         phases.tell("writing figures", 0, 1)
         with at_place(figures):
-            written["figures"] = [str(path) for path in found.write_figures(figures)]
+            alone = not isinstance(found, Comparison)
+            drawn = found.write_figures(figures, *sections) if alone else found.write_figures(figures)
+            written["figures"] = [str(path) for path in drawn]
         phases.tell("writing figures", 1, 1)
     if out is not None:
-        from gmr.evaluation.comparison import Comparison
-
         phases.tell("writing the report", 0, 1)
         with at_place(out):
             out.parent.mkdir(parents=True, exist_ok=True)

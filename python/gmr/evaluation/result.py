@@ -197,8 +197,12 @@ class Evaluation:
         """
         return write_tables(self.tables(), folder, formats)
 
-    def write_figures(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
-        """Write every printable figure as SVG into a folder, ``<figure>.svg`` each: all of them, or none.
+    def write_figures(self, folder: str | os.PathLike[str], *added: Section) -> tuple[Path, ...]:
+        """Write every figure as SVG into a folder, ``<figure>.svg`` each: all of them, or none.
+
+        Args:
+            folder: where to; made where it is missing.
+            added: sections of what was done with the evaluation, whose figures are drawn too.
 
         Raises:
             MissingExtraError: vl-convert-python is not installed.
@@ -206,7 +210,7 @@ class Evaluation:
         """
         from gmr.evaluation.figures import svg
 
-        return svg(self, folder)
+        return svg(self, folder, added)
 
     def report(self, path: str | os.PathLike[str], *added: Section) -> None:
         """Write the report: one self-contained HTML file that opens offline.

@@ -28,7 +28,8 @@ class Figure:
         chart: Vega-Lite description without ``data``: it names its data sets and CSS colours, and is as wide
             as what holds it. Its ``config`` adds to the look that all charts share.
         data: the data sets by the names that the chart uses.
-        printable: whether it is of use, and of a bearable size, as an SVG file.
+        key: what the page tells beside the chart, such as the names behind numbers, in lines for below the
+            title of an SVG file.
     """
 
     name: str
@@ -36,7 +37,7 @@ class Figure:
     sentence: str
     chart: Mapping[str, Any]
     data: Mapping[str, Table] = field(default_factory=dict)
-    printable: bool = True
+    key: tuple[str, ...] = ()
 
     def dressed(self) -> dict[str, Any]:
         """The chart in the common look, still without its data and with CSS colours: what the page embeds."""
@@ -59,7 +60,13 @@ class Figure:
             "width": _WIDTH,
             "height": _HEIGHT if complete["height"] == "container" else complete["height"],
             "background": "#ffffff",
-            "title": {"text": self.title, "anchor": "start", "fontSize": 15, "offset": 12},
+            "title": {
+                "text": self.title,
+                "subtitle": list(self.key),
+                "anchor": "start",
+                "fontSize": 15,
+                "offset": 12,
+            },
             "padding": 12,
             "datasets": {name: list(table.rows()) for name, table in self.data.items()},
         }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from gmr.evaluation.figures.clip_circles import clip_circles
@@ -26,6 +26,7 @@ from gmr.evaluation.figures.turn_symmetry import turn_symmetry
 from gmr.evaluation.path_sentences import path_sets
 from gmr.evaluation.result import Evaluation
 from gmr.pages.figure import Figure
+from gmr.pages.section import Section
 
 __all__ = ["Figure", "figures", "svg"]
 
@@ -52,14 +53,15 @@ def figures(evaluation: Evaluation) -> Iterator[Figure]:
     yield clip_circles(evaluation)
 
 
-def svg(evaluation: Evaluation, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
-    """Write every printable figure as SVG: all of the files, or none of them.
-
-    The coverage scatter is left out: it takes half a kilobyte a point, and in print the density says more.
+def svg(
+    evaluation: Evaluation, folder: str | os.PathLike[str], added: Iterable[Section] = ()
+) -> tuple[Path, ...]:
+    """Write every figure as SVG: all of the files, or none of them.
 
     Args:
         evaluation: what to draw.
         folder: where to; made where it is missing.
+        added: sections of what was done with the evaluation, whose figures are drawn too.
 
     Returns:
         The files written, ``<figure>.svg`` each.
@@ -68,6 +70,5 @@ def svg(evaluation: Evaluation, folder: str | os.PathLike[str]) -> tuple[Path, .
         MissingExtraError: vl-convert-python is not installed.
         OSError: the folder may not be written to, or the disk is full.
     """
-    return write_svg(
-        {Path(folder) / f"{figure.name}.svg": figure for figure in figures(evaluation) if figure.printable}
-    )
+    every = [*figures(evaluation), *(figure for section in added for figure in section.figures)]
+    return write_svg({Path(folder) / f"{figure.name}.svg": figure for figure in every})

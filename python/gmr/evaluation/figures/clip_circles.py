@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -41,6 +42,16 @@ def clip_circles(evaluation: Evaluation) -> Figure:
         sentence=_sentence(names, transitions, lines, joined),
         chart=_chart(),
         data={"dots": dots, "lines": lines, "names": _labels(names)},
+        key=_key(names),
+    )
+
+
+def _key(names: list[str]) -> tuple[str, ...]:
+    """The names behind the numbers, in lines."""
+    # A name does not break at its own spaces.
+    each = [f"{number} {name}".replace(" ", "\u00a0") for number, name in enumerate(names, 1)]
+    return tuple(
+        line.replace("\u00a0", " ") for line in textwrap.wrap(" · ".join(each), 110, break_on_hyphens=False)
     )
 
 
@@ -202,6 +213,19 @@ def _chart() -> dict[str, Any]:
                         {"field": "plays", "title": "Plays per frame", "format": ".1f"},
                     ],
                 },
+            },
+            # A number is read through the lines that cross it.
+            {
+                "data": {"name": "names"},
+                "mark": {
+                    "type": "text",
+                    "fontSize": 13,
+                    "stroke": "var(--page)",
+                    "strokeWidth": 5,
+                    "strokeJoin": "round",
+                    "aria": False,
+                },
+                "encoding": {"x": x, "y": y, "text": {"field": "number", "type": "nominal"}},
             },
             {
                 "data": {"name": "names"},

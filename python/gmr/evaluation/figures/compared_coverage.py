@@ -47,7 +47,6 @@ def compared_coverage(evaluations: Sequence[Evaluation]) -> Figure:
         sentence=_sentence(names, windows, step, limit),
         chart=_chart(points, names, limit),
         data={"windows": points},
-        printable=False,
     )
 
 

@@ -61,7 +61,7 @@ def comparison_figures(evaluations: Sequence[Evaluation]) -> ComparedFigures:
 
 
 def svg_of_comparison(evaluations: Sequence[Evaluation], folder: str | os.PathLike[str]) -> tuple[Path, ...]:
-    """Write every printable figure as SVG: those of all datasets into a folder, those of each into one in it.
+    """Write every figure as SVG: those of all datasets into a folder, those of each into one in it.
 
     Args:
         evaluations: what to draw.
@@ -75,7 +75,7 @@ def svg_of_comparison(evaluations: Sequence[Evaluation], folder: str | os.PathLi
         OSError: the folder may not be written to, or the disk is full.
     """
     drawn = comparison_figures(evaluations)
-    own = [figure for figure in (drawn.trials, drawn.coverage) if figure.printable]
+    own = (drawn.trials, drawn.coverage)
     folders = _folders([evaluation.dataset for evaluation in evaluations])
     return write_svg(
         {
@@ -84,7 +84,6 @@ def svg_of_comparison(evaluations: Sequence[Evaluation], folder: str | os.PathLi
                 Path(folder) / folders[place] / f"{name}.svg": figure
                 for name, row in drawn.rows.items()
                 for place, figure in row
-                if figure.printable
             },
         }
     )

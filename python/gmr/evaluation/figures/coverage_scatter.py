@@ -50,7 +50,6 @@ def coverage_scatter(evaluation: Evaluation) -> Figure:
         sentence=_sentence(windows, len({base_name(clip) for clip in clips.tolist()}), step, limit),
         chart=_chart(points, limit),
         data={"windows": points, "chosen": points.take(np.arange(0))},
-        printable=False,
     )
 
 
