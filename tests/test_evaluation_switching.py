@@ -20,6 +20,7 @@ from gmr.evaluation.segments import answer, segments_table
 from gmr.evaluation.step_response import step_response
 from gmr.evaluation.timeline import timeline_table
 from gmr.evaluation.transitions import transitions_of, transitions_table
+from gmr.table import Table
 from locomotion import RATE, Arc, Gait, frames_of, walked
 
 CLIPS = frames_of({"a.bvh": Arc(4.0, 1.0), "b.bvh": Arc(3.0, 2.0)})
@@ -114,9 +115,25 @@ def test_a_character_that_never_changes_its_speed_takes_up_none_but_its_own() ->
     own = (table["speed"] == 1.0) & (table["segment"] > 0) & (table["to_speed"] == 1.0)
     assert (table["settling_time"][own] == 0).all()
     assert np.isnan(table["settling_time"][(table["segment"] > 0) & ~own]).all()
-    assert "in 0 of 12 switches when speeding up and in 4 of 8 switches when slowing down (" in taken_up(
-        table
+    assert taken_up(table).endswith(
+        "in 0 of 12 switches when speeding up and in 4 of 8 switches when slowing down "
+        "(at all of these it was at that speed already)."
     )
+
+
+def test_what_is_at_a_new_speed_already_does_not_count_for_how_soon_it_is_taken_up() -> None:
+    table = segments_table("set", TRIALS, "time", lagging(2.0))
+    up = np.flatnonzero(table["to_speed"] > table["from_speed"])
+    settled = np.full(len(table), np.nan)
+    settled[up] = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.5, 2.0, *[np.nan] * (len(up) - 8)]
+    said = taken_up(Table({**dict(table), "settling_time": settled}))
+    assert (
+        f"in 8 of {len(up)} switches when speeding up (at 5 of these it was at that speed already; at the "
+        "others it takes 1.5 seconds in the median)"
+    ) in said
+    settled[up[1:]] = np.nan
+    said = taken_up(Table({**dict(table), "settling_time": settled}))
+    assert "when speeding up (it was at that speed already)" in said
 
 
 def test_trials_of_one_speed_have_no_switch_to_measure() -> None:

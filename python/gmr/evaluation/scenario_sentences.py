@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gmr.evaluation.regions import Grid, Limits, judged
 from gmr.evaluation.scenarios.on_grid import on_grid
@@ -57,9 +58,22 @@ def taken_up(segments: Table) -> str:
 
 def _way(switches: Table, what: str) -> str:
     settled = switches["settling_time"]
-    taken = np.isfinite(settled)
-    soon = f" (in {duration(float(np.median(settled[taken])))} in the median)" if taken.any() else ""
-    return f"in {int(taken.sum())} of {count(len(settled), 'switch', 'switches')} when {what}{soon}"
+    taken = settled[np.isfinite(settled)]
+    soon = f" ({_how_soon(taken)})" if len(taken) else ""
+    return f"in {len(taken)} of {count(len(settled), 'switch', 'switches')} when {what}{soon}"
+
+
+def _how_soon(taken: NDArray[np.float64]) -> str:
+    """How long new speeds take that are taken up; those that were there already would hide it."""
+    later = taken[taken > 0]
+    median = f"{duration(float(np.median(later)))} in the median" if len(later) else ""
+    already = len(taken) - len(later)
+    if not already:
+        return f"in {median}"
+    if len(taken) == 1:
+        return "it was at that speed already"
+    at = f"at {already if len(later) else 'all'} of these it was at that speed already"
+    return f"{at}; at the others it takes {median}" if len(later) else at
 
 
 def _sets(trials: Table) -> list[np.ndarray[tuple[int, ...], np.dtype[np.bool_]]]:

@@ -25,8 +25,8 @@ class StepResponse:
     Attributes:
         rise_time: seconds from a tenth of the step to nine tenths; NaN where it never gets so far.
         overshoot: how far it went beyond the target, in the unit of the values; 0 where it did not.
-        settling_time: seconds from the step until it is near the target and stays there; NaN where it is
-            not near it at the end.
+        settling_time: seconds from the step until it is near the target and stays there; 0 only where it is
+            near from the first sample on, as what foresaw the step is; NaN where it is not near at the end.
     """
 
     rise_time: float

@@ -65,7 +65,8 @@ class Tables:
             speed_error turn_rate_error_deg speed_deviation turn_rate_deviation_deg offset_mean
             rise_time overshoot settling_time.
             ``start`` counts from where recording begins; ``from_speed`` and the last three, which measure
-            how a new speed is taken up, are NaN in the first stretch; see
+            how a new speed is taken up, are NaN in the first stretch; ``settling_time`` is 0 only where the
+            character is at the new speed from the switch on; see
             :class:`gmr.evaluation.step_response.StepResponse`.
         timeline: one row a quarter of a second of a trial: dataset scenario tracking speed turn_rate_deg
             seconds asked_speed played_speed played_turn_rate_deg offset
