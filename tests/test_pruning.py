@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +20,11 @@ from gmr.evaluation.simulation import Simulation
 from gmr.matching import LOCOMOTION, Database
 from gmr.matching.trial import TrialLog, run_trials
 from gmr.pruning import Part, Pruning, Score, lossless, prune, write_pruned
+from gmr.pruning.curve import Curve, Point
 from gmr.pruning.outcomes import joined, outcomes_of
 from gmr.pruning.part import gaps, ranges_of, recordings_of, whole
 from gmr.pruning.prune import goal_of
+from gmr.pruning.words import curve_sentence, headline
 from locomotion import Arc
 from walker import write_walkers
 
@@ -138,6 +140,43 @@ def test_the_goal_is_reached_and_not_passed_by_more_than_a_move(pruned: Pruning)
     seconds = pruned.chosen.part.seconds / pruned.curve.points[0].part.seconds
     assert 0.5 < seconds <= 0.6
     assert not pruned.chosen.lossless
+
+
+def scored(of: Pruning, *scores: Score) -> Pruning:
+    """A pruning whose curve goes on from the whole to points with other scores, the first of them chosen."""
+    whole_of_it, last = of.curve.points[0], of.curve.points[-1]
+    held = np.arange(162) < 31
+    outcomes = replace(of.outcomes, offset=np.full(162, 0.956), held=held, steady=np.ones(162, bool))
+    points = [Point(last.part, score, lossless=False) for score in scores]
+    return replace(of, outcomes=outcomes, curve=Curve((whole_of_it, *points)), chosen=points[0])
+
+
+def test_words_say_that_it_costs_only_where_it_does(pruned: Pruning) -> None:
+    better, same, worse = Score(0.955, 32, 162), Score(0.956, 31, 162), Score(0.956, 30, 162)
+    told = curve_sentence(scored(pruned, better))
+    assert told.startswith("From there on trials change, yet on the whole not for the worse: with ")
+    assert "the mean offset is 0.955 m where it was 0.956 m, and 32 of 162 trials hold where 31 did" in told
+    told = curve_sentence(scored(pruned, same))
+    assert "the mean offset stays 0.956 m, and 31 of 162 trials hold, as before" in told
+    assert curve_sentence(scored(pruned, worse)).startswith("From there on it costs: ")
+    assert curve_sentence(scored(pruned, better, worse)).startswith("From there on trials change: ")
+
+
+def test_the_headline_tells_what_an_evaluation_of_the_new_folder_shows(
+    pruned: Pruning, folder: Path, tmp_path: Path
+) -> None:
+    written = write_pruned(pruned, folder, tmp_path / "smaller")
+    shown = replace(written, whole=Score(0.956, 31, 162), own_scale=Score(0.971, 29, 162))
+    assert headline(pruned, shown).endswith(
+        " of the seconds can go; the new folder does 29 of 162 trials where the whole dataset does 31, and "
+        "its mean offset is 0.971 m where that of the whole is 0.956 m."
+    )
+    same = replace(pruned, chosen=pruned.curve.lossless)
+    assert headline(same, replace(shown, identical=True)).endswith(
+        " of the seconds can go, and every trial stays the same, bit by bit. With the features scaled by "
+        "what is left, as an evaluation of the new folder has them, it does 29 of 162 trials where the whole "
+        "dataset does 31, and its mean offset is 0.971 m where that of the whole is 0.956 m."
+    )
 
 
 @given(st.data())

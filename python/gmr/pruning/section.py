@@ -13,7 +13,7 @@ from gmr.pages.section import Section
 from gmr.pruning.figures import figures
 from gmr.pruning.manifest import files_words, scores
 from gmr.pruning.prune import Pruning
-from gmr.pruning.words import headline, sentences
+from gmr.pruning.words import headline, opening_sentences
 from gmr.pruning.writing import Written
 from gmr.table import Table
 
@@ -52,7 +52,7 @@ def pruning_section(of: Pruning, written: Written | None = None) -> Section:
         + element("div", element("div", save, class_="controls") + table, class_="inside"),
     )
     # The figures say what the other sentences would.
-    told = sentences(of)[:1]
+    told = opening_sentences(of)
     files = ""
     if written is not None:
         told.append(files_words(written))
@@ -61,7 +61,7 @@ def pruning_section(of: Pruning, written: Written | None = None) -> Section:
     return Section(
         name="pruning",
         title="What can go",
-        html=section("pruning", "What can go", headline(of), content),
+        html=section("pruning", "What can go", headline(of, written), content),
         figures=tuple(drawn),
         tables={"importance": of.importance, "curve": of.curve.table},
     )

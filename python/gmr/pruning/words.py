@@ -4,28 +4,52 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from gmr.evaluation.words import count, duration, listing, number, percent
 from gmr.pruning.curve import Point
+from gmr.pruning.outcomes import Score
 from gmr.pruning.part import recordings_of
 from gmr.pruning.prune import Pruning
 
-__all__ = ["curve_sentence", "headline", "held_sentence", "importance_sentence", "sentences"]
+if TYPE_CHECKING:
+    from gmr.pruning.writing import Written
+
+__all__ = [
+    *("curve_sentence", "headline", "held_sentence", "importance_sentence"),
+    *("opening_sentences", "sentences"),
+]
 
 MOST_NAMES = 3
 
 
-def headline(of: Pruning) -> str:
-    """What can go and what it costs, in one sentence."""
-    share = percent(_gone(of, of.chosen))
-    if of.chosen.lossless:
-        return f"{share} of the seconds can go, and every trial stays the same, bit by bit."
-    return f"{share} of the seconds can go; {_cost(of, of.chosen)}."
+def headline(of: Pruning, written: Written | None = None) -> str:
+    """What can go and what it costs, in one sentence; two where the features' scale decides.
+
+    Args:
+        of: the pruning.
+        written: the files, where they were: then the cost is what an evaluation of the new folder shows.
+    """
+    can_go = f"{percent(_gone(of, written or of.chosen))} of the seconds can go"
+    if not of.chosen.lossless or not (written is None or written.identical):
+        return f"{can_go}; {_cost(of, of.chosen) if written is None else f'the new folder {_does(written)}'}."
+    free = f"{can_go}, and every trial stays the same, bit by bit."
+    if written is None or written.own_scale == written.whole:
+        return free
+    return (
+        f"{free} With the features scaled by what is left, as an evaluation of the new folder has them, it "
+        f"{_does(written)}."
+    )
 
 
 def sentences(of: Pruning) -> list[str]:
     """What stands behind it, in reading order."""
-    return [_lossless(of), curve_sentence(of), importance_sentence(of), *_what_counts(of)]
+    return [*opening_sentences(of), curve_sentence(of), importance_sentence(of), *_what_counts(of)]
+
+
+def opening_sentences(of: Pruning) -> list[str]:
+    """Those of them that no figure says."""
+    return [_lossless(of)]
 
 
 def _what_counts(of: Pruning) -> Iterator[str]:
@@ -60,8 +84,12 @@ def curve_sentence(of: Pruning) -> str:
     parts = [f"with {percent(_gone(of, last))} gone {_cost(of, last)}"]
     if of.chosen in points and of.chosen is not last:
         parts.insert(0, f"with {percent(_gone(of, of.chosen))} gone {_cost(of, of.chosen)}")
-    said = "; ".join(parts)
-    return f"From there on it costs: {said}."
+    told = [last] if len(parts) == 1 else [of.chosen, last]
+    costs = [_costs(of, point) for point in told]
+    beyond = "it costs" if all(costs) else "trials change"
+    if not any(costs):
+        beyond += ", yet on the whole not for the worse"
+    return f"From there on {beyond}: {'; '.join(parts)}."
 
 
 def held_sentence(of: Pruning) -> str:
@@ -107,14 +135,40 @@ def _change(row: dict[str, float]) -> str:
     return ", ".join(parts)
 
 
-def _gone(of: Pruning, point: Point) -> float:
+def _gone(of: Pruning, point: Point | Written) -> float:
     return 1 - point.part.seconds / of.curve.points[0].part.seconds
+
+
+def _costs(of: Pruning, point: Point) -> bool:
+    """Whether a point does worse than the whole in either figure, as they are told."""
+    before, after = of.outcomes.score, point.score
+    return after.held < before.held or _metres(after) > _metres(before)
+
+
+def _metres(score: Score) -> float:
+    """The mean offset as it is told."""
+    return round(score.offset, 3)
 
 
 def _cost(of: Pruning, point: Point) -> str:
     """What a point costs, as a clause."""
     before, after = of.outcomes.score, point.score
-    held = f"{after.held} of {count(after.runs, 'trial')} hold where {before.held} did"
+    held = f"{after.held} of {count(after.runs, 'trial')} hold"
+    held += ", as before" if after.held == before.held else f" where {before.held} did"
     if math.isnan(after.offset):
         return held
+    if _metres(after) == _metres(before):
+        return f"the mean offset stays {before.offset:.3f} m, and {held}"
     return f"the mean offset is {after.offset:.3f} m where it was {before.offset:.3f} m, and {held}"
+
+
+def _does(written: Written) -> str:
+    """What the new folder does by itself, beside the whole dataset, as a clause without its subject."""
+    before, after = written.whole, written.own_scale
+    as_many = after.held == before.held
+    held = ", as many as the whole dataset" if as_many else f" where the whole dataset does {before.held}"
+    said = f"does {after.held} of {count(after.runs, 'trial')}{held}"
+    if math.isnan(after.offset):
+        return said
+    far = f"its mean offset is {after.offset:.3f} m where that of the whole is {before.offset:.3f} m"
+    return f"{said}, and {far}"
