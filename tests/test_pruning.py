@@ -21,10 +21,12 @@ from gmr.matching import LOCOMOTION, Database
 from gmr.matching.trial import TrialLog, run_trials
 from gmr.pruning import Part, Pruning, Score, lossless, prune, write_pruned
 from gmr.pruning.curve import Curve, Point
+from gmr.pruning.figures import figures
 from gmr.pruning.outcomes import joined, outcomes_of
 from gmr.pruning.part import gaps, ranges_of, recordings_of, whole
 from gmr.pruning.prune import goal_of
 from gmr.pruning.words import curve_sentence, headline
+from gmr.table import Table
 from locomotion import Arc
 from walker import write_walkers
 
@@ -177,6 +179,18 @@ def test_the_headline_tells_what_an_evaluation_of_the_new_folder_shows(
         "what is left, as an evaluation of the new folder has them, it does 29 of 162 trials where the whole "
         "dataset does 31, and its mean offset is 0.971 m where that of the whole is 0.956 m."
     )
+
+
+def test_bars_are_sorted_by_what_they_show(pruned: Pruning) -> None:
+    changes = np.linspace(-0.01, 0.05, len(pruned.importance))
+    mixed = np.roll(changes, 2)
+    importance = Table({**dict(pruned.importance), "offset_change": mixed})
+    figure = next(
+        f for f in figures(replace(pruned, importance=importance)) if f.name == "pruning_importance"
+    )
+    shown = figure.data["clips"]["offset_change"]
+    assert (np.diff(shown) <= 0).all()
+    assert "Bars are sorted by the mean offset alone" in figure.sentence
 
 
 @given(st.data())
