@@ -25,7 +25,8 @@ from gmr.pruning.figures import figures
 from gmr.pruning.outcomes import joined, outcomes_of
 from gmr.pruning.part import gaps, ranges_of, recordings_of, whole
 from gmr.pruning.prune import goal_of
-from gmr.pruning.words import curve_sentence, headline
+from gmr.pruning.section import pruning_section
+from gmr.pruning.words import curve_sentence, headline, sentences
 from gmr.table import Table
 from locomotion import Arc
 from walker import write_walkers
@@ -191,6 +192,19 @@ def test_bars_are_sorted_by_what_they_show(pruned: Pruning) -> None:
     shown = figure.data["clips"]["offset_change"]
     assert (np.diff(shown) <= 0).all()
     assert "Bars are sorted by the mean offset alone" in figure.sentence
+
+
+def test_a_step_that_takes_much_more_than_was_asked_for_is_told(
+    pruned: Pruning, folder: Path, tmp_path: Path
+) -> None:
+    more = replace(pruned, goal=0.1)
+    share = f"{100 * (1 - more.chosen.part.seconds / more.curve.points[0].part.seconds):.0f}%"
+    said = f"10% was asked for; the smallest step that reaches it takes {share}."
+    assert sentences(more)[0] == said
+    assert said in pruning_section(more).html
+    assert "was asked for" not in " ".join(sentences(replace(pruned, goal=0.999 * float(share[:-1]) / 100)))
+    write_pruned(more, folder, tmp_path / "smaller")
+    assert said in (tmp_path / "smaller" / "manifest.md").read_text()
 
 
 @given(st.data())

@@ -14,6 +14,7 @@ from gmr.motion import Motion
 from gmr.pruning.outcomes import Score
 from gmr.pruning.part import Range, gaps, recordings_of
 from gmr.pruning.prune import Pruning
+from gmr.pruning.words import asked_sentence
 
 if TYPE_CHECKING:
     from gmr.pruning.writing import Written
@@ -118,7 +119,7 @@ def manifest_words(of: Pruning, written: Written, motions: Mapping[str, Motion])
         f"# {of.dataset}, smaller",
         "",
         f"{duration(before)} of motion were evaluated; {duration(after)} are here: {percent(share)} went. "
-        + cost_of_files(written),
+        + " ".join([*asked_sentence(of), cost_of_files(written)]),
         "",
         "| | mean offset, m | trials that hold |",
         "|---|---|---|",

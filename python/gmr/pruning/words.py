@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from gmr.pruning.writing import Written
 
 __all__ = [
-    *("curve_sentence", "headline", "held_sentence", "importance_sentence"),
+    *("asked_sentence", "curve_sentence", "headline", "held_sentence", "importance_sentence"),
     *("opening_sentences", "sentences"),
 ]
 
@@ -49,7 +49,16 @@ def sentences(of: Pruning) -> list[str]:
 
 def opening_sentences(of: Pruning) -> list[str]:
     """Those of them that no figure says."""
-    return [_lossless(of)]
+    return [*asked_sentence(of), _lossless(of)]
+
+
+def asked_sentence(of: Pruning) -> Iterator[str]:
+    """How much was asked for, where more goes."""
+    if isinstance(of.goal, str):
+        return
+    asked, taken = percent(of.goal), percent(_gone(of, of.chosen))
+    if asked != taken:
+        yield f"{asked} was asked for; the smallest step that reaches it takes {taken}."
 
 
 def _what_counts(of: Pruning) -> Iterator[str]:
