@@ -207,6 +207,17 @@ def test_a_step_that_takes_much_more_than_was_asked_for_is_told(
     assert said in (tmp_path / "smaller" / "manifest.md").read_text()
 
 
+@pytest.mark.parametrize("goal", [0.4, 0.55])
+def test_a_goal_is_passed_by_no_more_than_a_second_where_smaller_moves_do(
+    tmp_path: Path, goal: float
+) -> None:
+    arcs = [Arc(20.0, speed, turn) for speed in (1.0, 2.0) for turn in (0.0, 50.0)]
+    write_walkers(tmp_path, {f"{place}.bvh": arc for place, arc in enumerate(arcs)})
+    of = prune(gmr.evaluate(tmp_path, **GRID), goal, until=0.2)
+    every = of.curve.points[0].part.seconds
+    assert goal * every <= every - of.chosen.part.seconds <= goal * every + 1.0
+
+
 @given(st.data())
 @settings(max_examples=8)
 def test_clips_that_are_left_do_as_a_database_built_of_their_files(folder: Path, data: st.DataObject) -> None:

@@ -140,7 +140,8 @@ def curve_of(
     while (gone := 1 - part.seconds / everything.seconds) < last - 1e-9:
         progress("removing frames", min(round(100 * gone), percent - 1), percent)
         aim = goal if gone < goal - 1e-9 else last
-        found = _step(asked, part, outcomes, rerun, min(STEP, aim - gone) * everything.seconds)
+        room = (aim - gone) * everything.seconds
+        found = _step(asked, part, outcomes, rerun, min(STEP * everything.seconds, room), room)
         if found is None:
             break
         part, outcomes = found
@@ -170,13 +171,16 @@ def _unneeded_go(database: Database, part: Part, lossless: Part, goal: float) ->
 
 
 def _step(
-    asked: Runs, part: Part, outcomes: Outcomes, rerun: Rerun, seconds: float
+    asked: Runs, part: Part, outcomes: Outcomes, rerun: Rerun, seconds: float, room: float
 ) -> tuple[Part, Outcomes] | None:
-    """What is left when the cheapest moves of so many seconds are made, and what becomes of the runs."""
+    """What is left when the cheapest moves of so many seconds are made, and what becomes of the runs.
+
+    Where moves of less do, no more than ``room`` seconds and a trim go.
+    """
     database = asked.database
     needed = needed_rows(database, outcomes)
     left = part.rows(database)
-    moves = _moves(database, part, outcomes, seconds)
+    moves = _moves(database, part, outcomes, seconds, room + TRIM)
     jobs = [_without(database, part, [move], needed, left) for move in moves]
     before, losses = outcomes.score, np.full(len(moves), np.inf)
     touching = [number for number, job in enumerate(jobs) if len(job.runs)]
@@ -187,11 +191,18 @@ def _step(
             after = outcomes.put(jobs[number].runs, found).score
             losses[number] = after.worse_than(before) / moves[number].seconds
     order = [number for number in np.argsort(losses, kind="stable").tolist() if np.isfinite(losses[number])]
-    return _made(asked, part, outcomes, rerun, [moves[number] for number in order], seconds)
+    cheapest = [moves[number] for number in order]
+    return _made(asked, part, outcomes, rerun, cheapest, seconds, room + TRIM)
 
 
 def _made(
-    asked: Runs, part: Part, outcomes: Outcomes, rerun: Rerun, moves: list[_Move], seconds: float
+    asked: Runs,
+    part: Part,
+    outcomes: Outcomes,
+    rerun: Rerun,
+    moves: list[_Move],
+    seconds: float,
+    most: float,
 ) -> tuple[Part, Outcomes] | None:
     """Make moves in their order until so many seconds are gone; fewer where nothing would be left to play."""
     database, begun = asked.database, part.seconds
@@ -200,8 +211,11 @@ def _made(
     for move in moves:
         if begun - smaller.seconds >= seconds * (1 - 1e-9):
             break
+        after = smaller.without(move.clip, move.gone)
+        if chosen and begun - after.seconds > most:
+            continue
         chosen.append(move)
-        smaller = smaller.without(move.clip, move.gone)
+        smaller = after
     needed, left = needed_rows(database, outcomes), part.rows(database)
     while chosen:
         job = _without(database, part, chosen, needed, left)
@@ -228,8 +242,9 @@ def _without(
     return Again(after, np.flatnonzero(needed[:, left & ~after].any(axis=1)))
 
 
-def _moves(database: Database, part: Part, outcomes: Outcomes, step: float) -> list[_Move]:
-    """The moves that touch least of what is played a second, some steps' worth of them."""
+def _moves(database: Database, part: Part, outcomes: Outcomes, step: float, most: float) -> list[_Move]:
+    """The moves that touch least of what is played a second, some steps' worth of them; of those that take
+    ``most`` seconds at most, where there are any."""
     played = _played(database, outcomes)
     past, future = database.reach
     shortest = past + future + 1 + round(TRIM * database.rate)
@@ -246,6 +261,7 @@ def _moves(database: Database, part: Part, outcomes: Outcomes, step: float) -> l
                 lost = slice(max(first, gone[0] - future), min(end, gone[1] + past))
                 seconds = (gone[1] - gone[0]) / database.rate
                 found.append(_Move(recording.name, gone, seconds, float(np.sum(own[lost]))))
+    found = [move for move in found if move.seconds <= most] or found
     found.sort(key=lambda move: (move.played / move.seconds, move.clip, move.gone))
     chosen: list[_Move] = []
     total = 0.0
