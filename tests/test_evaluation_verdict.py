@@ -65,6 +65,18 @@ def test_a_span_with_successes_in_it_says_how_many_trials_fail_of_how_many() -> 
     assert "by 50 to 100 degrees/s at 1 to 3 m/s (18 of 20 trials)" in failure
 
 
+def test_all_that_fails_within_a_span_is_counted_as_the_map_shows_it() -> None:
+    def answer(speed: float, turn: float) -> Gait:
+        fails = abs(turn) == 100 or (speed, abs(turn)) == (1.0, 50.0) or (speed, turn) == (2.0, 50.0)
+        return Gait(speed, 0.0 if fails else turn)
+
+    said = judged({"straight.bvh": Arc(4.0, 2.0, 0.0)}, answer)
+    told = [sentence for sentence in said.sentences if sentence.startswith("It fails when")]
+    assert "turning either way by 50 to 100 degrees/s at 1 to 3 m/s (13 of 20 trials)" in told[0]
+    assert "turning left, though not right, by 50 degrees/s at 2 m/s (1 trial)" in told[1]
+    assert "here and there" not in str(said)
+
+
 def test_a_dataset_of_straight_clips_is_told_so() -> None:
     straight = {name: arc for name, arc in EVERYTHING.items() if not arc.turn_rate_deg}
     said = judged(straight, lambda speed, turn: Gait(speed, 0.0))

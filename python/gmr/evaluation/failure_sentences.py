@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gmr.evaluation.regions import EITHER, LEFT, LEFT_ONLY, RIGHT, RIGHT_ONLY, STRAIGHT, Grid, Region
 from gmr.evaluation.words import GAITS, circles, count, duration, gait_of, listing, number, span
@@ -20,7 +21,7 @@ SMALLEST_SHARE: Final = 0.03
 
 def failure_sentences(grid: Grid, regions: Sequence[Region]) -> Iterator[str]:
     """Say of the largest regions what is asked there, what the clips have of it, and what goes wrong."""
-    told = _worth_telling(grid, regions)
+    told = [_filled(grid, region) for region in _worth_telling(grid, regions)]
     for region in told:
         away = f" (mean distance from the path {_range(grid.offset[tuple(region.cells.T)])} m)"
         yield (
@@ -28,7 +29,10 @@ def failure_sentences(grid: Grid, regions: Sequence[Region]) -> Iterator[str]:
             f"{_clips_there(grid, region)}, and the character {_symptom(grid, region)}"
             f"{away if grid.timed else ''}."
         )
-    others = sum(len(region.cells) for region in regions) - sum(len(region.cells) for region in told)
+    untold = ~grid.held
+    for region in told:
+        untold[tuple(region.cells.T)] = False
+    others = int(untold.sum())
     if others:
         verb = "fails" if others == 1 else "fail"
         yield f"{count(others, 'more trial')} {verb} here and there on the grid."
@@ -53,13 +57,23 @@ def _movement(grid: Grid, region: Region) -> str:
 
 def _trials(grid: Grid, region: Region) -> str:
     """How many trials fail, out of those within the speeds and turn rates that the region spans."""
+    failing, among = len(region.cells), int(_spanned(grid, region).sum())
+    return count(failing, "trial") if failing == among else f"{failing} of {count(among, 'trial')}"
+
+
+def _filled(grid: Grid, region: Region) -> Region:
+    """The region with all else that fails within what it spans, which the words about it speak of, too."""
+    return Region(region.side, np.argwhere(_spanned(grid, region) & ~grid.held))
+
+
+def _spanned(grid: Grid, region: Region) -> NDArray[np.bool_]:
+    """(V, W) the trials within the speeds and turn rates of a region, on its side or sides."""
     speeds, turns = grid.speeds[region.cells[:, 0]], grid.turn_rates_deg[region.cells[:, 1]]
     sides = np.isin(np.sign(grid.turn_rates_deg), np.sign(turns))
     steep = np.abs(grid.turn_rates_deg)
     turning = sides & (steep >= np.abs(turns).min()) & (steep <= np.abs(turns).max())
     fast = (grid.speeds >= speeds.min()) & (grid.speeds <= speeds.max())
-    failing, among = len(region.cells), int(fast.sum() * turning.sum())
-    return count(failing, "trial") if failing == among else f"{failing} of {count(among, 'trial')}"
+    return np.asarray(fast[:, None] & turning)
 
 
 def _clips_there(grid: Grid, region: Region) -> str:
