@@ -15,6 +15,7 @@ import gmr
 from gmr.demo import demo_folder
 from gmr.errors import DatasetError
 from gmr.matching import LOCOMOTION, Database, Group, Schema
+from gmr.matching.prepare import in_metres_upright
 from gmr.motion import Motion
 from gmr.skeleton import Skeleton
 from walkers import CMU, body, placed, walker
@@ -339,3 +340,13 @@ def test_a_schema_weighed_anew_scales_just_the_groups_that_are_named() -> None:
     ):
         with pytest.raises(gmr.DatasetError, match=says):
             LOCOMOTION.weighed(weights)
+
+
+def test_notes_speak_of_no_clip_that_is_left_out(data: Path) -> None:
+    walk = gmr.read(data / "cmu_07_01.bvh")
+    side = in_metres_upright(walk, 0.0254 / 0.45, "+X")
+    database = Database.build({"walk.bvh": walk, "again.bvh": walk, "side.bvh": side}, schema=SHORT)
+    assert "shows no facing" in database.excluded["side.bvh"]
+    assert "side.bvh" not in str(database.notes)
+    assert "used as they are" not in str(database.notes)
+    assert any(note.startswith("2 of 2 clips begin with a T-pose") for note in database.notes)

@@ -102,7 +102,8 @@ def assemble(
         builder = _core.DatabaseBuilder(seen.skeleton.topology, translated.tolist(), groups, rate)
     except ValueError as error:
         raise DatasetError(str(error)) from error
-    assembly = Assembly(builder, dict(seen.excluded))
+    # The survey's own, so that its notes do not speak of what is left out here.
+    assembly = Assembly(builder, seen.excluded)
     for name in seen.motions:
         try:
             take = _take(seen, name, rate, translated, (tags or {}).get(name))

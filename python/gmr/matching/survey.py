@@ -3,7 +3,7 @@ root."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,10 +62,15 @@ class Survey:
     """The joint that already is a simulation root, None where one is made."""
     left_behind: tuple[int, ...]
     """Joints above the hips that stay behind in the world when the body walks away, the uppermost first."""
-    excluded: Mapping[str, str]
-    """Clips left out, by name, and why."""
-    notes: tuple[str, ...]
-    """What was guessed or done, in sentences."""
+    excluded: dict[str, str]
+    """Clips left out, by name, and why; those that cannot be assembled join them."""
+    tell: Callable[[Container[str]], Iterator[str]]
+    """What was guessed or done, in sentences that speak of no clip that is left out."""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was guessed or done with the clips that are not left out, in sentences."""
+        return tuple(self.tell(self.excluded))
 
 
 def survey(
@@ -87,10 +92,9 @@ def survey(
         has no known body.
     """
     usable, excluded = _usable({name: home(motion) for name, motion in motions.items()})
-    usable, skipped, notes = _without_tposes(usable)
+    usable, skipped = _without_tposes(usable)
     usable, skeleton_notes = _on_one_skeleton(usable, excluded)
-    notes += skeleton_notes
-    notes += _short_notes(usable, shortest)
+    _check_lengths(usable, shortest)
     sampled = {name: motion[:: max(1, motion.frame_count // _SAMPLES)] for name, motion in usable.items()}
     poses = {name: np.asarray(motion.positions(dtype=np.float64)) for name, motion in sampled.items()}
     skeleton = next(iter(usable.values())).skeleton
@@ -101,16 +105,24 @@ def survey(
     usable, sampled = ({name: of[name] for name in units} for of in (usable, sampled))
     poses = {name: poses[name] for name in units}
     skeleton = next(iter(usable.values())).skeleton
-    notes += oddities(usable, poses, joints.roles, up)
     upright = [turned_upright(clip * units[name], up) for name, clip in poses.items()]
     clips = (in_metres_upright(motion, units[name], up) for name, motion in sampled.items())
     root = find_root_joint(skeleton, joints, upright, clips)
     floor = _floor(upright)
-    notes += _joint_notes(skeleton, joints, root) + unit_notes
-    if up != "+Y":
-        notes.append(f"The files have {up} up; they were turned to +Y.")
-    if floor:
-        notes.append(f"The ground of the files lies at {floor:.2f} m; they were moved to have it at 0.")
+
+    def tell(left_out: Container[str]) -> Iterator[str]:
+        left = {name: motion for name, motion in usable.items() if name not in left_out}
+        yield from _tpose_notes(left, skipped)
+        yield from skeleton_notes
+        yield from _short_notes(left, shortest)
+        yield from oddities(left, {name: poses[name] for name in left}, joints.roles, up)
+        yield from _joint_notes(skeleton, joints, root)
+        yield from unit_notes
+        if up != "+Y":
+            yield f"The files have {up} up; they were turned to +Y."
+        if floor:
+            yield f"The ground of the files lies at {floor:.2f} m; they were moved to have it at 0."
+
     return Survey(
         motions=usable,
         skipped=skipped,
@@ -123,7 +135,7 @@ def survey(
         root=root,
         left_behind=joints_left_behind(skeleton, joints, upright),
         excluded=excluded,
-        notes=tuple(notes),
+        tell=tell,
     )
 
 
@@ -154,42 +166,49 @@ def _unusable(motion: Motion) -> str | None:
     return None
 
 
-def _short_notes(motions: Mapping[str, Motion], shortest: float) -> list[str]:
-    """Names the clips that are too short to be matched; their frames count for coverage all the same.
-
-    Raises:
-        DatasetError: all of them are.
-    """
-    seconds = {name: (motion.frame_count - 1) * motion.frame_time for name, motion in motions.items()}
-    short = [name for name in motions if seconds[name] < shortest * (1 - _PRINTED)]
-    if len(short) == len(motions):
-        longest = max(short, key=lambda name: seconds[name])
+def _check_lengths(motions: Mapping[str, Motion], shortest: float) -> None:
+    """Raises :class:`gmr.DatasetError` where all clips are too short to be matched."""
+    if len(_short(motions, shortest)) == len(motions):
+        longest = max(motions, key=lambda name: _seconds(motions[name]))
         raise DatasetError(
             f"no clip lasts the {shortest:.2f} s of a pose and the path ahead of it, so no frame can be "
-            f"matched; the longest, '{longest}', lasts {seconds[longest]:.2f} s. Give longer takes"
+            f"matched; the longest, '{longest}', lasts {_seconds(motions[longest]):.2f} s. Give longer takes"
         )
-    if not short:
-        return []
-    return [
-        f"Shorter than the {shortest:.2f} s of a pose and the path ahead of it, and so counted for coverage "
-        f"but never matched: {len(short)} of {len(motions)} clips ({quoted(short, 3)})."
-    ]
 
 
-def _without_tposes(
-    motions: dict[str, Motion],
-) -> tuple[dict[str, Motion], dict[str, int], list[str]]:
-    """The clips from where the recording begins, how many frames that skips, and a note that says so."""
+def _short_notes(motions: Mapping[str, Motion], shortest: float) -> Iterator[str]:
+    """Names the clips that are too short to be matched; their frames count for coverage all the same."""
+    short = _short(motions, shortest)
+    if short:
+        yield (
+            f"Shorter than the {shortest:.2f} s of a pose and the path ahead of it, and so counted for "
+            f"coverage but never matched: {len(short)} of {len(motions)} clips ({quoted(short, 3)})."
+        )
+
+
+def _short(motions: Mapping[str, Motion], shortest: float) -> list[str]:
+    return [name for name, motion in motions.items() if _seconds(motion) < shortest * (1 - _PRINTED)]
+
+
+def _seconds(motion: Motion) -> float:
+    return (motion.frame_count - 1) * motion.frame_time
+
+
+def _without_tposes(motions: dict[str, Motion]) -> tuple[dict[str, Motion], dict[str, int]]:
+    """The clips from where the recording begins, and how many frames that skips."""
     skipped = {name: leading_rest_frames(motion) for name, motion in motions.items()}
     skipped = {name: frames for name, frames in skipped.items() if frames}
-    if not skipped:
-        return motions, {}, []
-    verb = "begins" if len(motions) == 1 else "begin"
-    note = (
-        f"{len(skipped)} of {len(motions)} clips {verb} with a T-pose that a converter added (whole-number "
-        f"angles, then a jump of the whole body); it was left out ({quoted(skipped, 3)})."
-    )
-    return {name: motion[skipped.get(name, 0) :] for name, motion in motions.items()}, skipped, [note]
+    return {name: motion[skipped.get(name, 0) :] for name, motion in motions.items()}, skipped
+
+
+def _tpose_notes(motions: Mapping[str, Motion], skipped: Mapping[str, int]) -> Iterator[str]:
+    begun = [name for name in skipped if name in motions]
+    if begun:
+        verb = "begins" if len(motions) == 1 else "begin"
+        yield (
+            f"{len(begun)} of {len(motions)} clips {verb} with a T-pose that a converter added (whole-number "
+            f"angles, then a jump of the whole body); it was left out ({quoted(begun, 3)})."
+        )
 
 
 def _on_one_skeleton(
