@@ -140,7 +140,8 @@ def _change(row: dict[str, float]) -> str:
         sign = "-" if row["offset_change"] < 0 else "+"
         parts.append(f"{sign}{number(abs(row['offset_change']))} m")
     if row["held_change"]:
-        parts.append(f"{row['held_change']:+.0f} trials")
+        trials = "trial" if abs(row["held_change"]) == 1 else "trials"
+        parts.append(f"{row['held_change']:+.0f} {trials}")
     return ", ".join(parts)
 
 
