@@ -13,6 +13,7 @@ import pytest
 import gmr
 from gmr.completion import Completion, complete_from, completion_section, synthesised, write_completion
 from gmr.completion.candidates import Candidate, on_skeleton, variants
+from gmr.completion.choice_words import from_folder
 from gmr.completion.choosing import bound, on_plan
 from gmr.completion.queries import queries_of
 from gmr.completion.shortfall import shortfalls
@@ -97,6 +98,14 @@ def test_what_cannot_be_used_is_refused_in_a_sentence(completed: Completion) -> 
     assert set(completed.refused) == {"odd.bvh"}
     assert "without 'Head'" in completed.refused["odd.bvh"]
     assert any("1 clip of archive was not considered (odd.bvh)" in each for each in sentences(completed))
+
+
+def test_kinds_of_chosen_clips_are_counted_behind_their_words(completed: Completion) -> None:
+    first = completed.choices[0]
+    slow = replace(first, candidate=Candidate("a.bvh", factor=0.8))
+    whole = replace(first, candidate=Candidate("b.bvh"))
+    said = next(from_folder(replace(completed, choices=(whole, slow, whole))))
+    assert said.endswith("that were there: as it is (2); 0.8 times as fast (1).")
 
 
 def test_no_more_seconds_are_chosen_than_asked_for(

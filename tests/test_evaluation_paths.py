@@ -186,8 +186,10 @@ def test_speeds_in_the_points_are_gone_at_there(tmp_path: Path) -> None:
         ("0,0,0\n1,1,1\n", r"bad\.csv:1: the first line is '0,0,0'; begin with a header"),
         ("x,z,t\n0,0,0\n0,1,1\n0,2,1\n", r"bad\.csv:4: t is 1 after 1; time must rise"),
         ("x,z,speed\n0,0,1\n0,1,-1\n", r"bad\.csv:3: speed is '-1'; give a number from 0 to 100"),
-        ("x,z\n0,0\n", r"bad\.csv: 1 points; a path has 2"),
+        ("a,b\n0,0\n1,1\n", r"bad\.csv:1: the first line is 'a,b'; begin with a header: 'x,z', "),
+        ("x,z\n0,0\n", r"bad\.csv: 1 point; a path has 2"),
         ("", r"bad\.csv: 0 points"),
+        ("x,z\n0,0\n0,1\n0,0\n", r"the path turns in no time; at most 720 degrees/s can be asked for"),
         ("x,z,t\n0,0,0\n0,9,0.01\n", r"bad, line 2 to bad, line 3 the path takes 900 m/s"),
         ("x,z,t\n0,0,0\n0,2,1\n0,0,2\n0,0,3\n", r"bad, line 2 to bad, line 3.*stand there"),
         ("x,z,speed\n0,0,0\n0,1,0\n", r"bad, line 3: the speed is 0 from the point before"),
@@ -310,6 +312,40 @@ def test_the_sentences_count_and_give_intervals_and_miss_standing() -> None:
     assert len(list(path_sentences(kept, stands, Limits()))) == 1
     slalom, _ = tables(Slalom((1.0, 2.0), (50.0,)))
     assert len(list(path_sentences(slalom, coverage, Limits()))) == 1
+
+
+@pytest.mark.parametrize(
+    ("held", "every", "said"),
+    [
+        (0, 20, "None of 20 trials goes as asked; the"),
+        (1, 5, "1 of 5 trials goes as asked; the"),
+        (2, 5, "2 of 5 trials go as asked; the"),
+        (1, 1, "The trial goes as asked; the"),
+        (0, 1, "The trial does not go as asked; the"),
+    ],
+)
+def test_the_pictures_of_paths_count_what_goes_as_asked(
+    found: gmr.evaluation.Evaluation, held: int, every: int, said: str
+) -> None:
+    chosen = found.measured.trials
+    one = chosen.take(np.repeat(np.flatnonzero(chosen["scenario"] == "hurry"), every))
+    right = np.arange(every) < held
+    trials = Table(
+        {
+            **dict(one),
+            "path": np.array([f"path {place}" for place in range(every)], object),
+            "offset_mean": np.where(right, 0.1, 3.0),
+            "speed_error_share": np.zeros(every),
+            "turn_rate_error_deg": np.zeros(every),
+        }
+    )
+    path = found.measured.paths
+    path = path.take(path["scenario"] == "hurry")
+    paths = Table.joined(
+        [Table({**dict(path), "path": np.full(len(path), name, object)}) for name in trials["path"]]
+    )
+    measured = replace(found.measured, trials=trials, paths=paths)
+    assert planned_paths(replace(found, measured=measured), "hurry", "time").sentence.startswith(said)
 
 
 @pytest.fixture(scope="module")

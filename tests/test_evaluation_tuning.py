@@ -23,6 +23,7 @@ from gmr.evaluation.tuning.weights import _checkerboard, _tied
 from gmr.evaluation.tuning.words import headline, sentences
 from gmr.matching import Database
 from gmr.matching.schema import LOCOMOTION, Schema
+from gmr.table import Table
 from locomotion import Arc
 from walker import write_walkers
 
@@ -199,6 +200,52 @@ def test_what_is_no_better_on_the_held_out_half_is_not_chosen(tuned: Tuning) -> 
     assert replace(tuned, gain=Interval(1.1 * least, 0.1 * least, 1.5 * least)).improves
     same = replace(tuned, gain=Interval(-1e-17, -1e-16, 0.0))
     assert list(sentences(same))[2].endswith(": nothing changes.")
+
+
+def test_words_tell_the_trials_that_hold_the_options_and_what_lies_at_the_bound(
+    evaluated: Evaluation, tuned: Tuning
+) -> None:
+    own = {(row["speed"], row["turn_rate_deg"]): row for row in evaluated.measured.trials.rows()}
+    for row in tuned.trials.rows():
+        was = own[row["speed"], row["turn_rate_deg"]]
+        near = abs(was["speed_error_share"]) <= 0.15 and abs(was["turn_rate_error_deg"]) <= 10
+        assert row["held"] == (near and was["offset_mean"] <= 0.5)
+    training = tuned.trials["set"] == "training"
+    trials = {**dict(tuned.trials), "held": np.arange(9) == 0, "held_tuned": training}
+    last = {"best": np.arange(2) == 1, "objective": np.array([1.0, 0.5])}
+    factors = {"foot position": 1 / 16, "foot velocity": 2**-0.5, "trajectory facing": 16.0}
+    names = [name for name in tuned.search.column_names if name not in last]
+    weights = {
+        group.name: group.weight * factors.get(group.name.replace("left ", "").replace("right ", ""), 1.0)
+        for group in LOCOMOTION.groups
+    }
+    usual = {name: LOCOMOTION.groups[places[0]].weight for name, places in _tied(LOCOMOTION).items()}
+    search = {**last, **{name: usual[name] * np.array([1.0, factors.get(name, 1.0)]) for name in names}}
+    found = replace(
+        tuned,
+        gain=Interval(100.0, 99.0, 101.0),
+        trials=Table(trials),
+        search=Table(search),
+        weights=weights,
+    )
+    told = list(sentences(found))
+    assert told[3] == (
+        f"Of the {training.sum()} trials tuned on {training.sum()} hold where 1 did; of the "
+        f"{9 - training.sum()} trials held out none holds, as before."
+    )
+    assert told[4:6] == [
+        "The weight of foot position lies at the bound of the search, a 16th of what it was: a smaller one "
+        "may do better.",
+        "The weight of trajectory facing lies at the bound of the search, 16 times what it was: a larger one "
+        "may do better.",
+    ]
+    assert told[6:] == [
+        'To evaluate with these weights: --weight "foot position=0.046875" --weight "foot velocity=0.707107" '
+        '--weight "trajectory facing=24"'
+    ]
+    *groups, facing = found.schema.groups
+    other = replace(found, schema=Schema((*groups, replace(facing, times=(0.5,)))))
+    assert not any("--weight" in sentence for sentence in sentences(other))
 
 
 def test_the_section_names_its_figure_and_tables(tuned: Tuning) -> None:

@@ -26,7 +26,7 @@ from gmr.pruning.outcomes import joined, outcomes_of
 from gmr.pruning.part import gaps, ranges_of, recordings_of, whole
 from gmr.pruning.prune import goal_of
 from gmr.pruning.section import pruning_section
-from gmr.pruning.words import curve_sentence, headline, sentences
+from gmr.pruning.words import curve_sentence, headline, importance_sentence, sentences
 from gmr.table import Table
 from locomotion import Arc
 from walker import write_walkers
@@ -180,6 +180,15 @@ def test_the_headline_tells_what_an_evaluation_of_the_new_folder_shows(
         "what is left, as an evaluation of the new folder has them, it does 29 of 162 trials where the whole "
         "dataset does 31, and its mean offset is 0.971 m where that of the whole is 0.956 m."
     )
+
+
+def test_one_trial_is_one(pruned: Pruning) -> None:
+    rows = len(pruned.importance)
+    lost = np.array([-1.0, -2.0, *[0.0] * (rows - 2)])
+    changed = {"loss": -lost, "held_change": lost, "offset_change": np.full(rows, 0.01)}
+    said = importance_sentence(replace(pruned, importance=Table({**dict(pruned.importance), **changed})))
+    assert "(+0.01 m, -1 trial)" in said
+    assert "(+0.01 m, -2 trials)" in said
 
 
 def test_bars_are_sorted_by_what_they_show(pruned: Pruning) -> None:

@@ -411,6 +411,13 @@ def test_charts_are_drawn_when_they_come_near_and_all_of_them_on_white_paper(
     assert undrawn(page) == []
     page.emulate_media(media="print", color_scheme="dark")
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    swatches = page.locator(".swatch").evaluate_all(
+        "all => all.map(one => getComputedStyle(one).printColorAdjust)"
+    )
+    assert swatches == ["exact"] * 4
+    assert not page.locator("#tables").is_visible()
+    page.locator("#tables details").first.evaluate("one => { one.open = true }")
+    assert page.locator("#tables table").first.is_visible()
     page.close()
     assert opened.complaints == []
 

@@ -36,7 +36,7 @@ def from_folder(of: Completion) -> Iterator[str]:
 
 def _kinds(choices: tuple[Choice, ...]) -> str:
     kinds = Counter(choice.candidate.how for choice in choices).most_common()
-    return "; ".join(f"{times} {how}" if len(kinds) > 1 else how for how, times in kinds)
+    return "; ".join(f"{how} ({times})" if len(kinds) > 1 else how for how, times in kinds)
 
 
 def _in_order(choices: tuple[Choice, ...]) -> str:

@@ -119,11 +119,16 @@ def _closest(names: Sequence[str], grids: Sequence[Grid], held: NDArray[np.bool_
     if not shared.any() or not all(grid.timed for grid in grids):
         return
     off = [100 * float(grid.offset[shared].mean()) for grid in grids]
-    first, *others = np.argsort(off, kind="stable").tolist()
-    rest = listing([f"{names[place]} {off[place]:.0f} cm" for place in others])
+    told = [f"{each:.0f} cm" for each in off]
+    order = np.argsort(off, kind="stable").tolist()
+    alike = [names[place] for place in order if told[place] == told[order[0]]]
+    who = f"{names[order[0]]} keeps closest to its path"
+    if len(alike) > 1:
+        who = f"{listing(alike)} keep equally close to their path"
+    rest = [f"{names[place]} {told[place]}" for place in order[len(alike) :]]
     yield (
-        f"In the trials that {all_of(len(names))} do, {names[first]} keeps closest to its path: "
-        f"{off[first]:.0f} cm off on average, {rest}."
+        f"In the trials that {all_of(len(names))} do, {who}: {told[order[0]]} off on average"
+        f"{f', {listing(rest)}' if rest else ''}."
     )
 
 

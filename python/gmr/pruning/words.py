@@ -140,7 +140,8 @@ def _change(row: dict[str, float]) -> str:
         sign = "-" if row["offset_change"] < 0 else "+"
         parts.append(f"{sign}{number(abs(row['offset_change']))} m")
     if row["held_change"]:
-        parts.append(f"{row['held_change']:+.0f} trials")
+        trials = "trial" if abs(row["held_change"]) == 1 else "trials"
+        parts.append(f"{row['held_change']:+.0f} {trials}")
     return ", ".join(parts)
 
 
@@ -174,9 +175,9 @@ def _cost(of: Pruning, point: Point) -> str:
 def _does(written: Written) -> str:
     """What the new folder does by itself, beside the whole dataset, as a clause without its subject."""
     before, after = written.whole, written.own_scale
-    as_many = "as the whole dataset does" if after.held == before.held else ""
-    held = as_many or f"where the whole dataset does {before.held}"
-    said = f"does {after.held} of {count(after.runs, 'trial')} {held}"
+    as_many = after.held == before.held
+    held = ", as many as the whole dataset" if as_many else f" where the whole dataset does {before.held}"
+    said = f"does {after.held} of {count(after.runs, 'trial')}{held}"
     if math.isnan(after.offset):
         return said
     far = f"its mean offset is {after.offset:.3f} m where that of the whole is {before.offset:.3f} m"

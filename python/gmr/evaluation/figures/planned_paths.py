@@ -15,7 +15,7 @@ from gmr.evaluation.path_sentences import between
 from gmr.evaluation.paths import held_paths
 from gmr.evaluation.regions import Limits
 from gmr.evaluation.result import Evaluation
-from gmr.evaluation.words import count, number
+from gmr.evaluation.words import number
 from gmr.pages.figure import Figure
 from gmr.table import Table
 
@@ -119,9 +119,15 @@ def _sentence(trials: Table, drawn: int, *, timed: bool) -> str:
     )
     plan = "where the plan has it at that time" if timed else "a plan that it is not steered to"
     return (
-        f"{count(held, 'trial')} of {len(trials)} go as asked; the character is {away} from {plan}{farthest}."
+        f"{_go(held, len(trials))} as asked; the character is {away} from {plan}{farthest}."
         f"{shown} Every picture has a scale of its own."
     )
+
+
+def _go(held: int, every: int) -> str:
+    if every == 1:
+        return "The trial goes" if held else "The trial does not go"
+    return f"{held or 'None'} of {every} trials {'go' if held > 1 else 'goes'}"
 
 
 def _chart() -> dict[str, Any]:

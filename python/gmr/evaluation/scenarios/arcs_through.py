@@ -206,10 +206,11 @@ def _check(span: _Span, one: str, other: str) -> None:
                 "turns back without a stop"
             )
         if abs(segment.turn_rate_deg) > STEEPEST:
+            rate = abs(segment.turn_rate_deg)
+            by = f"by {rate:,.0f} degrees/s" if math.isfinite(rate) else "in no time"
             raise ValueError(
-                f"from {one} to {other} the path turns by {abs(segment.turn_rate_deg):,.0f} degrees/s; "
-                f"at most {STEEPEST:g} can be asked for: round the corner, go there more slowly, or "
-                "stand there: the point twice, at two times"
+                f"from {one} to {other} the path turns {by}; at most {STEEPEST:g} degrees/s can be asked "
+                "for: round the corner, go there more slowly, or stand there: the point twice, at two times"
             )
 
 

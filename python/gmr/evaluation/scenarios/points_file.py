@@ -44,7 +44,7 @@ def read_points(path: str | os.PathLike[str]) -> FilePoints:
     header = tuple(cell.lower() for cell in lines[0][1]) if lines else ()
     if header in HEADERS:
         lines = lines[1:]
-    elif lines and len(header) != 2:
+    elif lines and (len(header) != 2 or not any(map(_is_number, header))):
         raise FormatError(
             f"the first line is '{','.join(lines[0][1]):.60}'; begin with a header: {_FORMS}",
             file=file,
@@ -54,7 +54,8 @@ def read_points(path: str | os.PathLike[str]) -> FilePoints:
     else:
         header = HEADERS[0]
     if not 2 <= len(lines) <= MOST_POINTS:
-        raise FormatError(f"{len(lines):,} points; a path has 2 to {MOST_POINTS:,}", file=file)
+        points = "1 point" if len(lines) == 1 else f"{len(lines):,} points"
+        raise FormatError(f"{points}; a path has 2 to {MOST_POINTS:,}", file=file)
     rows = [_row(cells, header, file, line) for line, cells in lines]
     table, third = np.array(rows), header[2] if len(header) > 2 else ""
     found = FilePoints(
@@ -91,6 +92,14 @@ def _row(cells: list[str], header: tuple[str, ...], file: str, line: int) -> lis
             expected=",".join(header),
         )
     return [_number(cell, name, file, line) for cell, name in zip(cells, header, strict=True)]
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
 
 
 def _number(cell: str, name: str, file: str, line: int) -> float:

@@ -20,8 +20,11 @@ from gmr.evaluation import metrics
 from gmr.evaluation.evaluate import Source, evaluate
 from gmr.evaluation.intervals import Interval, mean_interval
 from gmr.evaluation.log import Log
+from gmr.evaluation.regions import Limits
 from gmr.evaluation.result import Evaluation
+from gmr.evaluation.scenario import Trial
 from gmr.evaluation.simulation import log_of
+from gmr.evaluation.trials import speed_error_share
 from gmr.evaluation.tuning.descent import Descent, Factors, descend
 from gmr.matching.database import Database
 from gmr.matching.schema import Schema
@@ -47,8 +50,8 @@ class Tuning:
         weights: what the search found, by the names of the schema's groups.
         smoothness: seconds: how much a metre of jumping a second counts beside a metre of offset.
         trials: one row a cell: set ("training" or "held out") speed turn_rate_deg, then offset_mean
-            discontinuity_per_second objective with the weights as they were, and the same names with
-            ``_tuned``.
+            discontinuity_per_second objective held (whether the trial does what it is asked, as the verdict
+            has it) with the weights as they were, and the same names with ``_tuned``.
         search: one row a step of the search: objective (over the training cells), best (whether it was the
             best so far), and the weight of each set of groups.
         gain: by how much the mean objective of the held-out cells falls, with its 95 % confidence interval
@@ -83,6 +86,16 @@ class Tuning:
     def chosen(self) -> Schema:
         """The features with the weights to use: tuned where that improves, else as they were."""
         return self.schema.weighed(self.weights) if self.improves else self.schema
+
+    @property
+    def named(self) -> dict[str, tuple[float, float]]:
+        """By the names of the search, of groups that share one, the weight as it was and as found."""
+        best = int(np.flatnonzero(self.search["best"])[-1])
+        return {
+            name: (float(self.search[name][0]), float(self.search[name][best]))
+            for name in self.search.column_names
+            if name not in ("objective", "best")
+        }
 
     def mean(self, which: str, column: str) -> float:
         """The mean of a column of :attr:`trials` over the cells of one set."""
@@ -162,12 +175,14 @@ class _Cells:
     Attributes:
         database: what they run on.
         profiles: what the core runs.
+        trials: what is asked for.
         speed, turn_rate_deg: (T,) of the cells.
         training: (T,) which of them the search sees.
     """
 
     database: Database
     profiles: tuple[Profile, ...]
+    trials: tuple[Trial, ...]
     speed: NDArray[np.float64]
     turn_rate_deg: NDArray[np.float64]
     training: NDArray[np.bool_]
@@ -189,7 +204,8 @@ class _Cells:
                 "in the constant scenario"
             )
         profiles = tuple(simulation.profiles[place] for place in chosen)
-        return cls(simulation.database, profiles, speed, turn, training)
+        trials = tuple(simulation.trials[place] for place in chosen)
+        return cls(simulation.database, profiles, trials, speed, turn, training)
 
     @property
     def sets(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -204,15 +220,19 @@ class _Cells:
         threads: int | None,
     ) -> Table:
         """Run some of the cells with weights, and measure them."""
-        profiles = [self.profiles[place] for place in np.flatnonzero(which)]
+        places = np.flatnonzero(which).tolist()
+        profiles, trials = [self.profiles[at] for at in places], [self.trials[at] for at in places]
         log = log_of(run_trials(self.database, profiles, weights=multipliers, threads=threads or 0))
         offset = metrics.mean_where(metrics.offset(log), log.recorded)
         jumped = _jumped_per_second(log)
+        turn_error = np.degrees(metrics.static_error(metrics.turn_rate(log), log.ref_turn_rate, log.moving))
+        held = Limits().held(speed_error_share(trials, log), turn_error, offset, timed=True)
         return Table(
             {
                 "offset_mean": offset,
                 "discontinuity_per_second": jumped,
                 "objective": offset + smoothness * jumped,
+                "held": held,
             }
         )
 

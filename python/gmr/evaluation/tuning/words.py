@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Final
 
-import numpy as np
-
 from gmr.evaluation.intervals import Interval
+from gmr.evaluation.tuning.descent import FARTHEST
 from gmr.evaluation.tuning.weights import HELD_OUT, TRAINING, WORTHWHILE, Tuning
 from gmr.evaluation.words import count, listing, number, percent
+from gmr.matching.schema import LOCOMOTION
 
 __all__ = ["headline", "sentences"]
 
@@ -48,7 +49,11 @@ def sentences(tuning: Tuning) -> Iterator[str]:
         yield f"{held_out}: nothing changes."
     else:
         yield f"{held_out}: {_change(gain)}."
-    if not tuning.improves:
+    yield _held(tuning)
+    yield from _bounds(tuning)
+    if tuning.improves:
+        yield from _options(tuning)
+    else:
         why = "what is not worth it" if tuning.beyond_chance else "what is not to be trusted"
         yield f"What the search found, and {why}: {_weights(tuning)}."
 
@@ -76,13 +81,52 @@ def _of_set(tuning: Tuning, which: str, where: str) -> str:
     )
 
 
+def _held(tuning: Tuning) -> str:
+    """How many trials hold before and after."""
+    parts = []
+    for which, what in ((TRAINING, "tuned on"), (HELD_OUT, "held out")):
+        chosen = tuning.trials["set"] == which
+        before, after = (int(tuning.trials[name][chosen].sum()) for name in ("held", "held_tuned"))
+        hold = f"{after} {'holds' if after == 1 else 'hold'}" if after else "none holds"
+        than = ", as before" if after == before else f" where {before or 'none'} did"
+        parts.append(f"of the {count(int(chosen.sum()), 'trial')} {what} {hold}{than}")
+    said = "; ".join(parts)
+    return f"{said[0].upper()}{said[1:]}."
+
+
+def _bounds(tuning: Tuning) -> Iterator[str]:
+    """The weights that may not be the best, for the search goes no farther."""
+    for name, (was, found) in tuning.named.items():
+        for bound, to, other in (
+            (1 / FARTHEST, f"a {FARTHEST:g}th of", "smaller"),
+            (FARTHEST, f"{FARTHEST:g} times", "larger"),
+        ):
+            if was and math.isclose(found, bound * was, rel_tol=1e-4):
+                yield (
+                    f"The weight of {name} lies at the bound of the search, {to} what it was: a {other} one "
+                    "may do better."
+                )
+
+
+def _options(tuning: Tuning) -> Iterator[str]:
+    """The tuned weights for the command line, which knows those of the usual features."""
+    known = {group.name for group in LOCOMOTION.groups} == set(tuning.weights)
+    if not known or LOCOMOTION.weighed(tuning.weights) != tuning.schema.weighed(tuning.weights):
+        return
+    # Beside the usual weights, for those of this evaluation may have been others already.
+    options = [
+        f'--weight "{name}={weight:.6g}"'
+        for name, (_, weight) in tuning.named.items()
+        if LOCOMOTION.weighed({name: weight}) != LOCOMOTION
+    ]
+    yield f"To evaluate with these weights: {' '.join(options) or 'no --weight'}"
+
+
 def _weights(tuning: Tuning) -> str:
     """Those that change, the names of the search."""
-    names = [name for name in tuning.search.column_names if name not in ("objective", "best")]
-    best = int(np.flatnonzero(tuning.search["best"])[-1])
     changed = [
-        f"{name} {number(float(tuning.search[name][best]))} (was {number(float(tuning.search[name][0]))})"
-        for name in names
-        if tuning.search[name][best] != tuning.search[name][0]
+        f"{name} {number(found)} (was {number(was)})"
+        for name, (was, found) in tuning.named.items()
+        if found != was
     ]
     return listing(changed) or "no others than before"
