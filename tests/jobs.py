@@ -67,6 +67,29 @@ def scaled(shared: Shared, number: int) -> tuple[int, int]:
     return number * shared.factor, type(shared).unpacked
 
 
+def scaled_slowly(shared: Shared, number: int) -> int:
+    time.sleep(0.02)
+    return number * shared.factor
+
+
+def unsendable(number: int) -> object:
+    return lambda: number
+
+
+class UnsendableError(Exception):
+    def __init__(self, what: str) -> None:
+        super().__init__(what)
+        self.held = lambda: what
+
+
+def refuse_unsendably(number: int) -> int:
+    raise UnsendableError("no third")
+
+
+def turned(many: bytes) -> bytes:
+    return many[::-1]
+
+
 def die_once_scaled(shared: tuple[str, int], number: int) -> int:
     """As :func:`die_once`, times what is shared."""
     folder, factor = shared

@@ -7,7 +7,8 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import closing
+from collections.abc import Iterator
+from contextlib import closing, contextmanager, suppress
 from functools import partial
 from pathlib import Path
 
@@ -90,6 +91,119 @@ def test_processes_end_with_the_command_that_is_killed(tmp_path: Path) -> None:
     done = len(list(tmp_path.iterdir()))
     time.sleep(0.2)
     assert 0 < done == len(list(tmp_path.iterdir()))
+
+
+BEGINNING = (
+    "import jobs; from gmr.cluster import results\n"
+    "if __name__ == '__main__':\n"
+    "    shared = jobs.Shared(3, bytes(40_000_000))  # far more than a pipe holds\n"
+    "    print(sorted(results(jobs.scaled_slowly, range({count}), workers=2, shared=shared)))"
+)
+ON_LINUX = pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")
+
+
+@ON_LINUX
+@pytest.mark.parametrize("seconds", [0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.9])
+@pytest.mark.parametrize("which", [0, 1])
+def test_a_process_that_is_killed_while_it_starts_costs_nothing(which: int, seconds: float) -> None:
+    with begun(BEGINNING.format(count=40)) as command:
+        process = workers_of(command, which + 1)[which]
+        time.sleep(seconds)
+        with suppress(ProcessLookupError):
+            os.kill(process, signal.SIGKILL)
+        out, err = command.communicate(timeout=60)
+    assert (command.returncode, err) == (0, "")
+    assert out == f"{[(number, 3 * number) for number in range(40)]}\n"
+
+
+@ON_LINUX
+@pytest.mark.parametrize("seconds", [0, 0.1, 0.3, 0.6])
+def test_an_interrupt_ends_the_command_while_processes_start(seconds: float) -> None:
+    with begun(BEGINNING.format(count=4000)) as command:
+        workers_of(command, 1)
+        time.sleep(seconds)
+        command.send_signal(signal.SIGINT)
+        out, err = command.communicate(timeout=60)  # ends when no worker is left either
+    assert (out, command.returncode) == ("", -signal.SIGINT)
+    assert err.count("Traceback") == 1
+    assert err.endswith("KeyboardInterrupt\n")
+
+
+@ON_LINUX
+def test_processes_that_all_die_while_they_start_are_given_up() -> None:
+    with begun(BEGINNING.format(count=4000)) as command:
+        until = time.monotonic() + 60
+        while command.poll() is None and time.monotonic() < until:
+            for process in children(command.pid):
+                with suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGKILL)
+        _, err = command.communicate(timeout=10)
+    assert "worker processes have died 3 times over the same work" in err
+
+
+@contextmanager
+def begun(program: str) -> Iterator[subprocess.Popen[str]]:
+    """The program; it and its workers are gone in the end, even where they hang."""
+    paths = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
+    with subprocess.Popen(
+        [sys.executable, "-c", program],
+        text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=os.environ | {"PYTHONPATH": paths},
+    ) as command:  # fmt: skip
+        try:
+            yield command
+        finally:
+            if command.poll() is None:
+                for process in children(command.pid):
+                    os.kill(process, signal.SIGKILL)
+                command.kill()
+
+
+def workers_of(command: subprocess.Popen[str], count: int) -> list[int]:
+    """As soon as the command has so many worker processes."""
+    until = time.monotonic() + 30
+    while time.monotonic() < until:
+        if len(found := children(command.pid)) >= count:
+            return found
+        time.sleep(0.002)
+    raise AssertionError("the workers did not start")
+
+
+def children(process: int) -> list[int]:
+    """Worker processes of a process, in the order in which they were started."""
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            fields = (folder / "stat").read_text().rpartition(")")[2].split()
+            if int(fields[1]) == process and b"spawn_main" in (folder / "cmdline").read_bytes():
+                found.append((int(fields[19]), int(folder.name)))
+    return [number for _, number in sorted(found)]
+
+
+def test_a_program_ends_that_asks_for_no_more_results() -> None:
+    program = (
+        "import jobs; from gmr.cluster import results\n"
+        "if __name__ == '__main__':\n"
+        "    found = results(jobs.process_of, range(1000), workers=2)\n"
+        "    next(found)"
+    )
+    with begun(program) as command:
+        assert command.communicate(timeout=60) == ("", "")
+    assert command.returncode == 0
+
+
+def test_what_cannot_be_sent_back_is_said() -> None:
+    with pytest.raises(Exception, match="lambda"):
+        list(results(jobs.unsendable, NUMBERS, workers=2))
+
+
+def test_an_error_that_cannot_be_sent_back_comes_in_words() -> None:
+    with pytest.raises(RuntimeError, match="UnsendableError: no third"):
+        list(results(jobs.refuse_unsendably, NUMBERS, workers=2))
+
+
+def test_large_jobs_and_results_go_both_ways() -> None:
+    many = [bytes([number]) * 5_000_000 for number in NUMBERS]
+    assert sorted(results(jobs.turned, many, workers=2)) == [(n, many[n][::-1]) for n in NUMBERS]
 
 
 def test_workers_are_counted_where_they_are_chosen() -> None:

@@ -1,4 +1,4 @@
-"""What all jobs of a run share, on the side of the worker: unpacked once."""
+"""What all jobs of a run share, on the side of a cluster's worker: unpacked once."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-__all__ = ["WithShared", "hold", "joined"]
+__all__ = ["WithShared", "joined"]
 
 Result = TypeVar("Result")
 
@@ -26,14 +26,14 @@ class WithShared(Generic[Result]):
     """
 
     work: Callable[..., Result]
-    run: str = ""
+    run: str
 
-    def __call__(self, job: Any, packed: bytes | None = None) -> Result:
-        """The result of one job; ``packed`` is what is shared, where the worker may not hold it yet."""
-        return self.work(_held[self.run] if packed is None else hold(self.run, packed), job)
+    def __call__(self, job: Any, packed: bytes) -> Result:
+        """The result of one job; ``packed`` is what is shared, as the worker may not hold it yet."""
+        return self.work(_hold(self.run, packed), job)
 
 
-def hold(run: str, packed: bytes) -> Any:
+def _hold(run: str, packed: bytes) -> Any:
     """What the jobs of a run share, unpacked once; of what an earlier run shared nothing is kept."""
     with _holding:
         if run not in _held:
