@@ -38,7 +38,7 @@ class Pruned:
         from gmr.pruning.words import headline, sentences
 
         width = min(shutil.get_terminal_size((100, 24)).columns, 100)
-        lines = ["", *textwrap.wrap(headline(self.found), width), ""]
+        lines = ["", *textwrap.wrap(headline(self.found, self.written), width), ""]
         for sentence in sentences(self.found):
             lines += textwrap.wrap(sentence, width, initial_indent="- ", subsequent_indent="  ")
         files = files_words(self.written)
@@ -57,7 +57,7 @@ class Pruned:
         from gmr.pruning.words import headline, sentences
 
         return {
-            "headline": headline(self.found),
+            "headline": headline(self.found, self.written),
             "sentences": sentences(self.found),
             "curve": plain_rows(self.found.curve.table),
             "importance": plain_rows(self.found.importance),
