@@ -68,15 +68,14 @@ def _classes(motion: Motion, at_home: Skeleton) -> NDArray[np.int32]:
     groups = [bones for bones in groups if np.ptp(slots[bones]) or (world[bones[0]] < 0 <= slots[bones[0]])]
     if not groups:
         return world
-    used = frozen(np.unique(slots[np.concatenate(groups)]), np.int32)
-    rotations = np.moveaxis(motion_rotations(motion, used, np.float64, None), 1, 0)
+    rotations = _world_rotations(motion, np.unique(slots[np.concatenate(groups)]))
     classes = world.copy()
     following = at_home.slot_count
     for bones in groups:
         number = int(world[bones[0]])
         found = [(IDENTITY, number)] if number < 0 else []
         for bone in bones.tolist():
-            own = rotations[np.searchsorted(used, slots[bone])]
+            own = rotations[int(slots[bone])]
             known = next((one for rotation, one in found if _are_alike(rotation, own)), None)
             if known is None:
                 known = following if found else number
@@ -84,6 +83,18 @@ def _classes(motion: Motion, at_home: Skeleton) -> NDArray[np.int32]:
                 found.append((own, known))
             classes[bone] = known
     return classes
+
+
+def _world_rotations(motion: Motion, slots: NDArray[np.int32]) -> dict[int, Floats]:
+    """(F, 4) world rotation of each slot; -1: the identity."""
+    above = np.append(motion.skeleton.topology.slot_parents, 0)
+    # That of a root is what the motion holds.
+    held = {slot: motion.rotations[:, slot] for slot in slots[above[slots] < 0].tolist()}
+    hung = frozen(slots[above[slots] >= 0], np.int32)
+    if not len(hung):
+        return held
+    solved = motion_rotations(motion, hung, np.float64, None)
+    return held | {slot: solved[:, k] for k, slot in enumerate(hung.tolist())}
 
 
 def _are_alike(one: Floats, other: Floats) -> bool:
