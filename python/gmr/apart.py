@@ -99,7 +99,9 @@ def _world_rotations(motion: Motion, slots: NDArray[np.int32]) -> dict[int, Floa
 
 def _are_alike(one: Floats, other: Floats) -> bool:
     """Whether rotations (F, 4) are the same in every frame."""
-    if np.abs(one - other).max(initial=0) <= _ALIKE:
+    # Number by number: where rows of four lie far apart, a loop over each row takes three times as long.
+    gaps = (one[..., k] - other[..., k] for k in range(4))
+    if all(gap.max(initial=0) <= _ALIKE and gap.min(initial=0) >= -_ALIKE for gap in gaps):
         return True
     signs = np.where((one * other).sum(axis=1, keepdims=True) < 0, -1.0, 1.0)
     return bool(np.abs(one - signs * other).max(initial=0) <= _ALIKE)
