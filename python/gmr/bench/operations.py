@@ -37,6 +37,8 @@ def operations(frame_count: int) -> Iterator[Contest]:
         yield _contest(f"{name}, from rows", read, operation)
         yield _contest(f"{name}, from a pose", posed, operation)
     yield _contest("join, from a pose", posed.split("LeftHand"), lambda motion: motion.join("LeftHand"))
+    apart = posed.with_roots(range(joint_count))
+    yield _contest("join, all, from a pose", apart, lambda motion: motion.with_roots(read.skeleton.roots))
 
 
 def _contest(name: str, motion: gmr.Motion, operation: Operation) -> Contest:
