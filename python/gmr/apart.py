@@ -33,11 +33,12 @@ _ALIKE: Final = 1e-6
 """Difference of quaternions up to which bones turn alike: what numbers of a file in float32 can tell."""
 
 
-def turned_apart(motion: Motion) -> Motion:
+def turned_apart(motion: Motion, *, threads: int | None = None) -> Motion:
     """The same motion, in its configuration; bones that turn apart share no rotation at home any more.
 
     Args:
         motion: any, in any configuration.
+        threads: 0: all cores; None: all cores for long motions. The bits do not depend on it.
 
     Returns:
         The same motion where all bones with one world rotation at home have one still. Else one on a skeleton
@@ -47,16 +48,16 @@ def turned_apart(motion: Motion) -> Motion:
     # Rows that are still there are those of this very motion, in which siblings turn alike.
     if skeleton.home is None or not isinstance(source, Pose) or source.rows is not None:
         return motion
-    classes = _classes(motion, skeleton.home)
+    classes = _classes(motion, skeleton.home, threads)
     if np.array_equal(classes, skeleton.home.topology.world_slots):
         return motion
     at_home = _separated(skeleton.home, classes)
     apart = arranged(at_home, _core.Forest(at_home.topology, skeleton.parents))
-    rotations = read_only(_rotations_on(motion, apart))
+    rotations = read_only(_rotations_on(motion, apart, threads))
     return replace(motion, skeleton=apart, source=replace(source, rotations=rotations, acclaim=None))
 
 
-def _classes(motion: Motion, at_home: Skeleton) -> NDArray[np.int32]:
+def _classes(motion: Motion, at_home: Skeleton, threads: int | None) -> NDArray[np.int32]:
     """(J,) a number for each world rotation, by the joint in which a bone ends at home.
 
     It is that of the slot that makes it at home (-1: the world's own) for the first bone with it, and a
@@ -68,7 +69,7 @@ def _classes(motion: Motion, at_home: Skeleton) -> NDArray[np.int32]:
     groups = [bones for bones in groups if np.ptp(slots[bones]) or (world[bones[0]] < 0 <= slots[bones[0]])]
     if not groups:
         return world
-    rotations = _world_rotations(motion, np.unique(slots[np.concatenate(groups)]))
+    rotations = _world_rotations(motion, np.unique(slots[np.concatenate(groups)]), threads)
     classes = world.copy()
     following = at_home.slot_count
     for bones in groups:
@@ -85,7 +86,7 @@ def _classes(motion: Motion, at_home: Skeleton) -> NDArray[np.int32]:
     return classes
 
 
-def _world_rotations(motion: Motion, slots: NDArray[np.int32]) -> dict[int, Floats]:
+def _world_rotations(motion: Motion, slots: NDArray[np.int32], threads: int | None) -> dict[int, Floats]:
     """(F, 4) world rotation of each slot; -1: the identity."""
     above = np.append(motion.skeleton.topology.slot_parents, 0)
     # That of a root is what the motion holds.
@@ -93,7 +94,7 @@ def _world_rotations(motion: Motion, slots: NDArray[np.int32]) -> dict[int, Floa
     hung = frozen(slots[above[slots] >= 0], np.int32)
     if not len(hung):
         return held
-    solved = motion_rotations(motion, hung, np.float64, None)
+    solved = motion_rotations(motion, hung, np.float64, threads)
     return held | {slot: solved[:, k] for k, slot in enumerate(hung.tolist())}
 
 
@@ -126,9 +127,9 @@ def _separated(at_home: Skeleton, classes: NDArray[np.int32]) -> Skeleton:
     return replace(at_home, slots=slots, slot_count=at_home.slot_count + len(made))
 
 
-def _rotations_on(motion: Motion, apart: Skeleton) -> Floats:
+def _rotations_on(motion: Motion, apart: Skeleton, threads: int | None) -> Floats:
     """(F, S, 4) rotations of the slots of ``apart``, by which every bone turns as it does."""
-    world = motion.bone_rotations(dtype=np.float64)
+    world = motion.bone_rotations(dtype=np.float64, threads=threads)
     bones = np.asarray(apart.forest.bones)
     above = np.asarray(apart.topology.slot_parents)
     turns: dict[int, Floats] = {}

@@ -149,7 +149,7 @@ def carried(
         looks_for_turns: False: bones that turn alike at home do so in this motion, or need not any more.
     """
     if looks_for_turns and motion.skeleton != skeleton:
-        motion, skeleton = _with_turns_of_their_own(motion, skeleton)
+        motion, skeleton = _with_turns_of_their_own(motion, skeleton, threads)
     source = motion.source
     total = threads_for(motion.frame_count * skeleton.joint_count, threads)
     if motion.skeleton == skeleton:
@@ -226,9 +226,11 @@ def _moved(motion: Motion, change: Callable[[_core.Forest], _core.Forest], threa
     return carried(motion, arranged(motion.skeleton, forest), threads=threads)
 
 
-def _with_turns_of_their_own(motion: Motion, skeleton: Skeleton) -> tuple[Motion, Skeleton]:
+def _with_turns_of_their_own(
+    motion: Motion, skeleton: Skeleton, threads: int | None
+) -> tuple[Motion, Skeleton]:
     """The motion as :func:`gmr.apart.turned_apart` has it, and the configuration on its skeleton."""
-    apart = turned_apart(motion)
+    apart = turned_apart(motion, threads=threads)
     if apart is motion:
         return motion, skeleton
     at_home = cast(Skeleton, apart.skeleton.home)

@@ -2,6 +2,7 @@
 
 use super::Kernels;
 use super::Work;
+use super::axes::BLOCKS_AT_ONCE;
 use super::traverse::Kernel;
 use super::tree::W;
 use super::turned::Turned;
@@ -12,9 +13,6 @@ type Key = u64;
 
 /// Rows looked at to choose the axis of a cut; more do not make better cuts.
 const SAMPLE: usize = 64;
-
-/// Blocks of axes whose sums have room in registers.
-const BLOCKS_AT_ONCE: usize = 4;
 
 /// Keys that a thread makes at a time.
 const KEYS_A_PART: usize = 1 << 14;
@@ -83,7 +81,7 @@ impl Work for Widest<'_> {
         let mut block = 0;
         while block * W < dims {
             // Several blocks at once, for the sums of one would wait for themselves.
-            let distances: [[f32; W]; BLOCKS_AT_ONCE] = self.distances(block);
+            let distances = self.distances(block);
             let axes = block * W..dims.min((block + BLOCKS_AT_ONCE) * W);
             for (axis, &distance) in axes.zip(distances.as_flattened()) {
                 if distance >= furthest {
@@ -97,23 +95,23 @@ impl Work for Widest<'_> {
 }
 
 impl Widest<'_> {
-    /// The sums of distances from the mean in `N` blocks of axes from the `first` on; behind the last, anything.
+    /// The sums of distances from the mean in blocks of axes from the `first` on; behind the last, anything.
     #[inline(always)]
-    fn distances<const N: usize>(&self, first: usize) -> [[f32; W]; N] {
+    fn distances(&self, first: usize) -> [[f32; W]; BLOCKS_AT_ONCE] {
         let step = self.keys.len().div_ceil(SAMPLE);
         let last = self.turned.dims.div_ceil(W) - 1;
         let sample = self.keys.iter().step_by(step).map(|&key| {
             let blocks = self.turned.blocks(frame_of(key));
-            std::array::from_fn::<_, N, _>(|block| blocks[(first + block).min(last)])
+            std::array::from_fn::<_, BLOCKS_AT_ONCE, _>(|block| blocks[(first + block).min(last)])
         });
         let share = 1.0 / sample.len() as f32;
-        let mut means = [[0.0; W]; N];
+        let mut means = [[0.0; W]; BLOCKS_AT_ONCE];
         for row in sample.clone() {
             for (mean, x) in means.iter_mut().zip(row) {
                 *mean = std::array::from_fn(|lane| mean[lane] + x[lane] * share);
             }
         }
-        let mut distances = [[0.0; W]; N];
+        let mut distances = [[0.0; W]; BLOCKS_AT_ONCE];
         for row in sample {
             for ((sum, mean), x) in distances.iter_mut().zip(means).zip(row) {
                 *sum = std::array::from_fn(|lane| sum[lane] + (x[lane] - mean[lane]).abs());

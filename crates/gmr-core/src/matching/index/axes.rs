@@ -12,7 +12,7 @@ use super::tree::W;
 const MOST_SWEEPS: usize = 12;
 
 /// Blocks of axes whose sums have room in registers.
-const BLOCKS_AT_ONCE: usize = 4;
+pub(super) const BLOCKS_AT_ONCE: usize = 4;
 
 /// Coordinates go no further, so that whatever is reckoned with them stays a number.
 const LARGEST: f64 = 1e18;
