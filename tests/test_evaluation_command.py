@@ -187,8 +187,8 @@ def test_the_only_file_of_a_folder_is_not_counted(folder: Path, capsys: Captured
 
 
 def test_clips_of_another_skeleton_are_left_out_in_one_sentence(folder: Path, capsys: Captured) -> None:
-    for name in ("odd.bvh", "queer.bvh"):
-        (folder / name).write_text(walker_bvh(Arc(2.0, 1.0)).replace("JOINT Head", "JOINT Kopf"))
+    for name, speed in (("odd.bvh", 1.0), ("queer.bvh", 1.2)):
+        (folder / name).write_text(walker_bvh(Arc(2.0, speed)).replace("JOINT Head", "JOINT Kopf"))
     assert run(folder, *SMALL, "--quiet") == 1
     said = capsys.readouterr()
     assert said.err == (

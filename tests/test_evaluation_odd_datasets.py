@@ -84,7 +84,7 @@ TAKEN = {
     "one clip": ({"walk": WALK}, "All of the time is played from the one clip, walk.bvh."),
     "the same clip again": (
         {"walk": WALK, "copy": WALK, "again": WALK},
-        "2 clips hold the same motion as another ('copy.bvh' as 'again.bvh' and 1 more): seconds that add no",
+        "2 clips hold the same motion as others ('again.bvh' as 'copy.bvh' and 1 more) and were left out: ",
     ),
     "rates that differ": (
         {"a": walker_bvh(Arc(4.0, 1.0), 24.0), "b": walker_bvh(Arc(4.0, 1.0), 120.0), "c": WALK},

@@ -46,6 +46,43 @@ def test_rows_are_the_frames_of_all_clips_at_60_hz() -> None:
     assert database.features.dtype == np.float32
 
 
+def test_a_motion_that_is_there_twice_counts_once() -> None:
+    walk, run = WALKS
+    clips = {"a": walk, "b": run, "a again": replace(walk, name="another")}
+    database = Database.build(clips, mirror=True)
+    once = Database.build({"a": walk, "b": run}, mirror=True)
+    assert database.duplicates == {"a again": "a"}
+    assert database.clip_names == once.clip_names == ("a", "a (mirrored)", "b", "b (mirrored)")
+    assert database.features.tobytes() == once.features.tobytes()
+    told = "'a again' holds the same motion as 'a' and was left out: every motion counts once."
+    assert database.notes[0] == told
+    assert not database.excluded
+    assert not once.duplicates
+
+
+def test_a_motion_with_other_tags_or_another_rate_is_another_clip() -> None:
+    walk = WALKS[0]
+    frames = np.arange(walk.frame_count) % 2
+    fast = replace(walk, frame_time=0.01)
+    clips = {"a": walk, "tagged": walk, "by frame": walk, "again": walk, "fast": fast}
+    database = Database.build(clips, tags={"tagged": 1, "by frame": frames, "again": frames.astype(np.uint8)})
+    assert database.duplicates == {"by frame": "again"}
+    assert database.clip_names == ("a", "tagged", "again", "fast")
+
+
+def test_a_duplicate_of_a_clip_that_is_left_out_is_left_out_for_the_same_reason() -> None:
+    walk = WALKS[1]
+    places = walk.translations.copy()
+    places[60:] += 3.0
+    jumping = Motion.from_pose(walk.skeleton, walk.rotations, places, walk.frame_time, unit=walk.unit)
+    database = Database.build({"a": WALKS[0], "b": jumping, "c": jumping})
+    assert set(database.excluded) == {"b", "c"}
+    assert database.excluded["b"] == database.excluded["c"]
+    assert database.excluded["b"].startswith("its hips jump")
+    assert not database.duplicates
+    assert not any("same motion" in note for note in database.notes)
+
+
 def test_frames_without_their_whole_future_are_no_candidates() -> None:
     database = Database.build(WALKS)
     for clip in (0, 1):
@@ -247,7 +284,7 @@ def test_a_normalization_can_be_that_of_another_database() -> None:
 
 
 def test_a_clip_without_a_name_of_its_own_gets_one() -> None:
-    database = Database.build([walker(2.0), WALKS[0], WALKS[0]])
+    database = Database.build([walker(2.0), WALKS[0], WALKS[1].with_name("curve")])
     assert database.clip_names == ("motion 1", "curve", "curve (2)")
 
 
@@ -345,7 +382,7 @@ def test_a_schema_weighed_anew_scales_just_the_groups_that_are_named() -> None:
 def test_notes_speak_of_no_clip_that_is_left_out(data: Path) -> None:
     walk = gmr.read(data / "cmu_07_01.bvh")
     side = in_metres_upright(walk, 0.0254 / 0.45, "+X")
-    database = Database.build({"walk.bvh": walk, "again.bvh": walk, "side.bvh": side}, schema=SHORT)
+    database = Database.build({"walk.bvh": walk, "half.bvh": walk[:-1], "side.bvh": side}, schema=SHORT)
     assert "shows no facing" in database.excluded["side.bvh"]
     assert "side.bvh" not in str(database.notes)
     assert "used as they are" not in str(database.notes)

@@ -26,7 +26,9 @@ SHORT = Schema(
 @pytest.mark.parametrize("schema", [None, SHORT], ids=["usual", "own"])
 def test_what_is_opened_is_what_was_saved(tmp_path: Path, schema: Schema | None) -> None:
     asked = {} if schema is None else {"schema": schema}
-    saved = Database.build(WALKS, mirror=True, tags={"curve": 5}, unit="cm", **asked)  # type: ignore[arg-type]
+    walks = [*WALKS, WALKS[1].with_name("once again")]
+    saved = Database.build(walks, mirror=True, tags={"curve": 5}, unit="cm", **asked)  # type: ignore[arg-type]
+    assert saved.duplicates == {"once again": WALKS[1].name}
     saved.save(tmp_path / "walks.gmrm")
     opened = Database.open(tmp_path / "walks.gmrm")
     for name in (
@@ -42,7 +44,8 @@ def test_what_is_opened_is_what_was_saved(tmp_path: Path, schema: Schema | None)
         np.testing.assert_array_equal(getattr(opened, name), getattr(saved, name), err_msg=name)
     for name in ("clips", "frames", "seconds", "mirrored", "starts"):
         np.testing.assert_array_equal(getattr(opened, name), getattr(saved, name), err_msg=name)
-    for name in ("schema", "skeleton", "joints", "clip_names", "units", "notes", "excluded", "rate"):
+    told = ("schema", "skeleton", "joints", "clip_names", "units", "notes", "excluded", "duplicates", "rate")
+    for name in told:
         assert getattr(opened, name) == getattr(saved, name), name
     queries = saved.features[::17] + np.float32(0.1)
     for one, other in zip(opened.search(queries, 3), saved.search(queries, 3), strict=True):

@@ -236,7 +236,8 @@ class _Hunt:
         database = self._build({**self.motions, **clips}, mirror=bool(self.whole.mirrored.any()))
         refused.update({name: why for name, why in database.excluded.items() if name in clips})
         self.tell("preparing candidates", 1, 1)
-        usable = {name: candidate for name, candidate in named.items() if name not in database.excluded}
+        there = set(database.clip_names)
+        usable = {name: candidate for name, candidate in named.items() if name in there}
         profiles = self.simulation.profiles
         return Contest(
             database,

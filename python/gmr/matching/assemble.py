@@ -112,6 +112,9 @@ def assemble(
                 assembly.add(take.image(image, translated))
         except (GmrError, ValueError) as error:
             assembly.excluded[name] = str(error)
+    for name, first in seen.duplicates.items():
+        if first in assembly.excluded:
+            assembly.excluded[name] = assembly.excluded[first]
     if not assembly.clip_names:
         first, why = next(iter(assembly.excluded.items()))
         raise DatasetError(
@@ -182,7 +185,7 @@ def _bits(tags: NDArray[np.uint32], motion: Motion, prepared: Motion, skipped: i
 
 def _check_tags(seen: Survey, tags: Tags) -> None:
     for name, given in tags.items():
-        if name in seen.excluded:
+        if name in seen.excluded or name in seen.duplicates:
             continue
         if name not in seen.motions:
             raise DatasetError(f"tags are given for '{name}', but no clip has this name")

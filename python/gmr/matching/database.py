@@ -60,6 +60,8 @@ class Database(DatabaseRows):
     """What was guessed, converted or left out, in sentences."""
     excluded: Mapping[str, str]
     """Clips that could not be used, by name, and why."""
+    duplicates: Mapping[str, str]
+    """Clips left out because another is the same motion with the same tags, by name, and which it is."""
     starts: NDArray[np.float64]
     """(C,) second of its file at which each clip begins (not 0 where a converter's T-pose was left out)."""
 
@@ -81,7 +83,8 @@ class Database(DatabaseRows):
         """The database of some clips.
 
         Args:
-            motions: the clips, by name or with names of their own.
+            motions: the clips, by name or with names of their own; of those that are equal in all numbers and
+            tags one is used, the others are named in :attr:`duplicates`.
             mirror: add the mirror image of each clip.
             pairs: joints of the two sides whose names do not tell that they belong together, for ``mirror``.
             schema: the features.
@@ -98,7 +101,7 @@ class Database(DatabaseRows):
         """
         if not 1 <= rate <= 1000:
             raise DatasetError(f"a database cannot have {rate} frames a second; give 1 to 1000")
-        seen = survey(named(motions), schema.span, names, unit)
+        seen = survey(named(motions), schema.span, names, unit, tags)
         assembly = assemble(seen, schema, rate, mirror, pairs, tags)
         offset, scale = (normalization.offset, normalization.scale) if normalization else (None, None)
         total = thread_count(threads)
@@ -116,6 +119,9 @@ class Database(DatabaseRows):
             units=seen.units,
             notes=_notes(seen, schema, core),
             excluded=assembly.excluded,
+            duplicates={
+                name: first for name, first in seen.duplicates.items() if name not in assembly.excluded
+            },
             starts=read_only(np.array(assembly.starts)),
         )
 

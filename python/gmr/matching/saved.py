@@ -48,6 +48,7 @@ def save(database: Database, path: str | os.PathLike[str]) -> None:
         "units": dict(database.units),
         "notes": list(database.notes),
         "excluded": dict(database.excluded),
+        "duplicates": dict(database.duplicates),
         "starts": database.starts.tolist(),
     }
     _core.save_database(
@@ -83,6 +84,8 @@ def contents(path: str | os.PathLike[str], check: bool) -> dict[str, Any]:
             "units": dict(known["units"]),
             "notes": tuple(known["notes"]),
             "excluded": dict(known["excluded"]),
+            # Databases saved before duplicates were left out have none to tell of.
+            "duplicates": dict(known.get("duplicates", {})),
             "starts": read_only(np.array(known["starts"], np.float64)),
         }
         _check(fields)

@@ -18,7 +18,7 @@ from gmr.evaluation.simulation import Simulation
 from gmr.matching.database import Database
 from gmr.matching.root import HEADING_WINDOW, POSITION_WINDOW
 from gmr.pruning.outcomes import Outcomes, same_bits
-from gmr.pruning.part import Part, ranges_of, recordings_of
+from gmr.pruning.part import Part, Range, ranges_of, recordings_of
 from gmr.pruning.rerun import Again, logs_on
 
 __all__ = ["lossless", "lossless_part", "prove", "simulation_of"]
@@ -39,7 +39,7 @@ def lossless(evaluation: Evaluation, *, threads: int = 0) -> Part:
     Returns:
         For every recording the ranges that are left: the frames that some trial needs, with those around them
         from which their features are measured, so that files cut there give the same features. Recordings
-        that no trial needs are gone.
+        that no trial needs are gone, and so are those that another one equals.
 
     Raises:
         GmrError: the evaluation was loaded and has no simulation; or a trial did change, which is a fault of
@@ -75,7 +75,7 @@ def lossless_part(database: Database, outcomes: Outcomes) -> Part:
     needed = np.zeros(len(database), bool)
     needed[shown] = True
     gap = round(LEAST_GAP * database.rate)
-    ranges = {}
+    ranges: dict[str, tuple[Range, ...]] = dict.fromkeys(database.duplicates, ())
     for recording in recordings_of(database):
         own = np.zeros(recording.frames, bool)
         for start in recording.starts:

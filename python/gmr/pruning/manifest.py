@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gmr.evaluation.words import count, duration, number, percent
+from gmr.matching.database import Database
 from gmr.motion import Motion
 from gmr.pruning.outcomes import Score
 from gmr.pruning.part import Range, gaps, recordings_of
 from gmr.pruning.prune import Pruning
-from gmr.pruning.words import asked_sentence
+from gmr.pruning.words import asked_sentence, twice_sentence
 
 if TYPE_CHECKING:
     from gmr.pruning.writing import Written
@@ -87,6 +88,20 @@ def _gone(of: Pruning, written: Written) -> Iterator[dict[str, Any]]:
                 "played_seconds": shown,
                 "why": _why(of, recording.name, (first, end), shown, worth[recording.name], whole),
             }
+    yield from _duplicates(of.simulation.database)
+
+
+def _duplicates(database: Database) -> Iterator[dict[str, Any]]:
+    """The clips that another one equals, which were gone before the first trial."""
+    frames = {recording.name: recording.frames for recording in recordings_of(database)}
+    for name, first in database.duplicates.items():
+        yield {
+            "clip": name,
+            "seconds": [0.0, (frames[first] - 1) / database.rate],
+            "whole": True,
+            "played_seconds": 0.0,
+            "why": f"the same motion as '{first}'",
+        }
 
 
 def _why(of: Pruning, clip: str, gone: Range, shown: float, worth: Mapping[str, Any], whole: bool) -> str:
@@ -119,7 +134,7 @@ def manifest_words(of: Pruning, written: Written, motions: Mapping[str, Motion])
         f"# {of.dataset}, smaller",
         "",
         f"{duration(before)} of motion were evaluated; {duration(after)} are here: {percent(share)} went. "
-        + " ".join([*asked_sentence(of), cost_of_files(written)]),
+        + " ".join([*asked_sentence(of), *twice_sentence(of), cost_of_files(written)]),
         "",
         "| | mean offset, m | trials that hold |",
         "|---|---|---|",

@@ -106,8 +106,10 @@ def recordings_of(database: Database) -> list[Recording]:
 
 
 def whole(database: Database) -> Part:
-    """All of a database."""
-    return Part(database.rate, {each.name: ((0, each.frames),) for each in recordings_of(database)})
+    """All of a database; clips that others equal are no part of it."""
+    ranges: dict[str, tuple[Range, ...]] = dict.fromkeys(database.duplicates, ())
+    ranges.update({each.name: ((0, each.frames),) for each in recordings_of(database)})
+    return Part(database.rate, ranges)
 
 
 def ranges_of(left: NDArray[np.bool_], least_gap: int = 1) -> tuple[Range, ...]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     *("asked_sentence", "curve_sentence", "headline", "held_sentence", "importance_sentence"),
-    *("opening_sentences", "sentences"),
+    *("opening_sentences", "sentences", "twice_sentence"),
 ]
 
 MOST_NAMES = 3
@@ -30,7 +30,11 @@ def headline(of: Pruning, written: Written | None = None) -> str:
         of: the pruning.
         written: the files, where they were: then the cost is what an evaluation of the new folder shows.
     """
-    can_go = f"{percent(_gone(of, written or of.chosen))} of the seconds can go"
+    what = f"{percent(_gone(of, written or of.chosen))} of the seconds"
+    if twice := len(of.simulation.database.duplicates):
+        are = "is" if twice == 1 else "are"
+        what = f"{count(twice, 'clip')} that {are} there twice and {what} of all others"
+    can_go = f"{what} can go"
     if not of.chosen.lossless or not (written is None or written.identical):
         return f"{can_go}; {_cost(of, of.chosen) if written is None else f'the new folder {_does(written)}'}."
     free = f"{can_go}, and every trial stays the same, bit by bit."
@@ -49,7 +53,7 @@ def sentences(of: Pruning) -> list[str]:
 
 def opening_sentences(of: Pruning) -> list[str]:
     """Those of them that no figure says."""
-    return [*asked_sentence(of), _lossless(of)]
+    return [*asked_sentence(of), _lossless(of), *twice_sentence(of)]
 
 
 def asked_sentence(of: Pruning) -> Iterator[str]:
@@ -84,6 +88,15 @@ def _lossless(of: Pruning) -> str:
     )
 
 
+def twice_sentence(of: Pruning) -> Iterator[str]:
+    """Which clips go because another is the same motion, where there are such."""
+    twice = of.simulation.database.duplicates
+    if twice:
+        name, first = next(iter(twice.items()))
+        goes, them = ("goes", "it") if len(twice) == 1 else (f"and {len(twice) - 1} more go", "them")
+        yield f"'{name}', the same motion as '{first}', {goes}, too: the evaluation had left {them} out."
+
+
 def curve_sentence(of: Pruning) -> str:
     """What the curve of quality for size shows."""
     points = [point for point in of.curve.points if not point.lossless]
@@ -98,7 +111,7 @@ def curve_sentence(of: Pruning) -> str:
     beyond = "it costs" if all(costs) else "trials change"
     if not any(costs):
         beyond += ", yet on the whole not for the worse"
-    return f"From there on {beyond}: {'; '.join(parts)}."
+    return f"Beyond what no trial needs, {beyond}: {'; '.join(parts)}."
 
 
 def held_sentence(of: Pruning) -> str:
