@@ -109,8 +109,14 @@ def read_back(motion: Motion) -> Motion:
     return read_amc(frames, asf=skeleton)
 
 
+def _of_length_1(vector: tuple[float, float, float]) -> tuple[float, float, float]:
+    x, y, z = (value / math.hypot(*vector) for value in vector)
+    return x, y, z
+
+
 numbers = st.one_of(st.integers(-9, 9).map(float), st.floats(-200, 200, allow_subnormal=False))
 vectors = st.tuples(numbers, numbers, numbers)
+directions = vectors.filter(any).map(_of_length_1)
 turns = st.permutations(["rx", "ry", "rz"]).flatmap(
     lambda dofs: st.integers(0, 3).map(lambda count: tuple(dofs[:count]))
 )
@@ -122,7 +128,7 @@ def bones(draw: st.DrawFn, name: str) -> Bone:
     dofs = draw(turns)
     return Bone(
         name,
-        draw(vectors),
+        draw(directions),
         draw(st.floats(0, 50)),
         draw(st.one_of(st.just((0.0, 0.0, 0.0)), vectors)),
         draw(st.sampled_from(ORDERS)),

@@ -253,6 +253,30 @@ def test_what_is_odd_is_read_with_a_warning_and_refused_when_strict(
         read_amc(data, name="walk.amc", asf=asf(), strict=True)
 
 
+@pytest.mark.parametrize(
+    ("direction", "length", "said"),
+    [
+        (
+            "3 0 0",
+            "2.5",
+            "direction of length 3, not 1: with the length 2.5 it is 7.5 long. Write",
+        ),
+        ("0 0 0", "2.5", "direction of length 0, not 1: with the length 2.5 it is 0 long"),
+        ("0.9996 0 0", "2.5", None),
+        ("0 0 0", "0", None),
+    ],
+)
+def test_a_direction_that_changes_a_bones_length_is_told(
+    direction: str, length: str, said: str | None
+) -> None:
+    text = asf(("direction 1 0 0\n     length 2.5", f"direction {direction}\n     length {length}"))
+    if said is None:
+        parse_asf(text)
+        return
+    with pytest.warns(FormatWarning, match=f"bone 'hip' has a {said}"):
+        parse_asf(text)
+
+
 def test_a_bone_missing_later_keeps_its_last_values() -> None:
     data = amc(("thigh 5 -6 8.5\n", "")) + b"3\nroot 1 2 3 4 5 6\nshin 1 2\nthigh 1 2 3\n"
     with pytest.warns(FormatWarning, match="number 2"):

@@ -57,6 +57,36 @@ def test_every_command_has_a_line_of_its_own_in_the_help(name: str, capsys: Capt
     assert not [line for line in lines if line.startswith("  ") and line.endswith("...")]
 
 
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (
+            ("evaluate", ".", "--prune-out", "less"),
+            "--prune-out is where --prune writes; say how much shall go",
+        ),
+        (
+            ("evaluate", ".", "--complete-out", "more"),
+            "--complete-out is where --complete-from FOLDER writes",
+        ),
+        (
+            ("info", "walk.bvh", "--relation", "ior"),
+            "--relation is for recordings of markers (C3D) only, but",
+        ),
+    ],
+)
+def test_an_option_that_would_do_nothing_is_refused(
+    options: tuple[str, ...], says: str, walk_path: Path, tmp_path: Path, capsys: Captured,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    (tmp_path / "walk.bvh").write_bytes(walk_path.read_bytes())
+    monkeypatch.chdir(tmp_path)
+    assert run(*options) == 2
+    said = capsys.readouterr()
+    assert says in " ".join(said.err.split())
+    assert not said.out
+    assert [path.name for path in tmp_path.iterdir()] == ["walk.bvh"]
+
+
 def test_a_unit_to_convert_from_needs_one_to_convert_to(
     walk_path: Path, tmp_path: Path, capsys: Captured
 ) -> None:

@@ -228,7 +228,7 @@ def test_headers_that_are_none_are_refused(header: bytes) -> None:
 def test_a_quaternion_of_another_length_is_told_with_its_line(data: Path, blank: str, line: int) -> None:
     text = (data / "gmr" / "valid" / "angles_and_quaternions.gmr").read_text()
     changed = text.replace("-0.5 90", "-0.6 90").replace("\n1 2 3 10", f"\n{blank}1 2 3 10").encode()
-    said = f"arm.gmr:{line}: 1 quaternions are not of length 1, the first in frame 1"
+    said = f"arm.gmr:{line}: 1 quaternion is not of length 1, the first in frame 1"
     with pytest.warns(FormatWarning, match=said):
         read_gmr(changed, name="arm.gmr")
     with pytest.raises(FormatError, match=said):

@@ -146,5 +146,5 @@ def test_quaternions_of_other_lengths_are_refused_where_all_is_looked_at(motion:
     rotations[5, 0] *= 1.1
     written = write_gmrb(replace(motion, source=Pose(rotations, pose.translated, pose.translations)))
     assert read_gmr(written).rotations[5, 0].tolist() == rotations[5, 0].tolist()
-    with pytest.raises(gmr.FormatError, match="1 quaternions are not of length 1, the first in frame 5"):
+    with pytest.raises(gmr.FormatError, match="1 quaternion is not of length 1, the first in frame 5"):
         read_gmr(written, strict=True)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import functools
-import shutil
-import textwrap
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,7 +10,9 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 import click
 
+from gmr.cli.common import options_given
 from gmr.cli.outcome import at_place
+from gmr.cli.paragraphs import listed_sentences, paragraph
 from gmr.cli.plain_rows import plain_rows
 from gmr.cli.progress import Phases
 
@@ -93,6 +93,8 @@ def completing_options(command: Command) -> Command:
         **others: Any,
     ) -> Any:
         check_choosing(complete_from, at_most, made, retarget, "--complete-from")
+        if complete_from is None and options_given("complete_out"):
+            raise click.UsageError("--complete-out is where --complete-from FOLDER writes; give both.")
         wanted = None
         if complete_from is not None:
             wanted = Completing(complete_from, complete_out, at_most, made, retarget)
@@ -240,11 +242,7 @@ def completion_words(found: Completion) -> str:
     """For a terminal."""
     from gmr.completion.words import headline, sentences
 
-    width = min(shutil.get_terminal_size((100, 24)).columns, 100)
-    lines = [*textwrap.wrap(headline(found), width), ""]
-    for sentence in sentences(found):
-        lines += textwrap.wrap(sentence, width, initial_indent="- ", subsequent_indent="  ")
-    return "\n".join(lines)
+    return "\n".join([*paragraph(headline(found)), "", *listed_sentences(sentences(found))])
 
 
 def earlier_clips(found: Completion, folder: Path) -> Iterator[str]:

@@ -27,6 +27,7 @@ __all__ = [
     "files_of",
     "finished",
     "naming",
+    "options_given",
     "progress",
     "read_input",
     "read_noting",
@@ -303,3 +304,12 @@ def _write_file(motion: Motion, out: Path | str, chosen: Format) -> None:
         except OSError as error:
             raise GmrError(f"{out}: its folder cannot be made: {error.strerror}") from error
     write(motion, out, chosen.name)
+
+
+def options_given(*names: str) -> tuple[str, ...]:
+    """Those of a command's options that were not left to their defaults, as they are written."""
+    context = click.get_current_context()
+    default = click.core.ParameterSource.DEFAULT
+    return tuple(
+        f"--{name.replace('_', '-')}" for name in names if context.get_parameter_source(name) is not default
+    )

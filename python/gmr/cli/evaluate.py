@@ -20,7 +20,7 @@ from gmr.cli.choosing import (
     read_dataset,
 )
 from gmr.cli.cluster_options import check_workers, cluster_options
-from gmr.cli.common import INTERRUPTED, say
+from gmr.cli.common import INTERRUPTED, options_given, say
 from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.evaluation_results import as_object, in_words
 from gmr.cli.outcome import at_place, left_out, refuse_inside, trouble_with_files
@@ -155,6 +155,8 @@ def evaluate(
     check_scenarios(scenarios, speeds, turn_rates, preset, seed, switching)
     if len(folders) > 1 and prune is not None:
         raise click.UsageError("--prune makes one dataset smaller; give one folder.")
+    if prune is None and options_given("prune_out"):
+        raise click.UsageError("--prune-out is where --prune writes; say how much shall go: --prune 30%.")
     check_workers(workers, cluster)
     if len(folders) > 1 and completing is not None:
         raise click.UsageError("--complete-from completes one dataset; give one folder.")

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import shutil
-import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gmr.cli.paragraphs import listed_sentences, paragraph
 from gmr.cli.plain_rows import plain_rows
 
 if TYPE_CHECKING:
@@ -20,12 +19,10 @@ __all__ = ["as_object", "in_words"]
 
 def in_words(found: Evaluation | Comparison, written: Mapping[str, Any]) -> str:
     """The verdict, for several datasets also the first sentence on each, and where the results lie."""
-    width = min(shutil.get_terminal_size((100, 24)).columns, 100)
-    lines = [*textwrap.wrap(found.verdict.headline, width), ""]
-    lines += _listed(found.verdict.sentences, width)
+    lines = [*paragraph(found.verdict.headline), "", *listed_sentences(found.verdict.sentences)]
     evaluations = _evaluations(found)
     for evaluation in evaluations if len(evaluations) > 1 else ():
-        lines += ["", *textwrap.wrap(f"{evaluation.dataset}: {evaluation.verdict.headline}", width)]
+        lines += ["", *paragraph(f"{evaluation.dataset}: {evaluation.verdict.headline}")]
     if written:
         lines.append("")
     if "tables" in written:
@@ -61,14 +58,6 @@ def _evaluations(found: Evaluation | Comparison) -> tuple[Evaluation, ...]:
     from gmr.evaluation import Comparison
 
     return found.evaluations if isinstance(found, Comparison) else (found,)
-
-
-def _listed(sentences: Iterable[str], width: int) -> list[str]:
-    return [
-        line
-        for sentence in sentences
-        for line in textwrap.wrap(sentence, width, initial_indent="- ", subsequent_indent="  ")
-    ]
 
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:

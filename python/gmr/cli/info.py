@@ -78,11 +78,16 @@ def info(
                     continue
                 options = {"strict": strict, "positions": positions, "asf": asf, "fps": amc_fps}
                 _describe(path, found, recordings, relation, animation=animation, **options)
+    others = [*found, *characters]
+    if relation is not None and others and not recordings:
+        raise click.UsageError(
+            f"--relation is for recordings of markers (C3D) only, but '{others[0]}' is none; leave it out."
+        )
     if as_json:
         alone = len(files) == 1 and not Path(files[0]).is_dir()
-        others = {path: marker_json(of) for path, of in recordings.items()}
-        others |= {path: character_json(of) for path, of in characters.items()}
-        click.echo(_as_json(found, others, failures.errors, alone))
+        told = {path: marker_json(of) for path, of in recordings.items()}
+        told |= {path: character_json(of) for path, of in characters.items()}
+        click.echo(_as_json(found, told, failures.errors, alone))
         return failures.exit_code()
     pages = [overview(found)] if len(found) > FEW else [page(path, of) for path, of in found.items()]
     pages += [marker_page(path, of) for path, of in recordings.items()]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
-from gmr.cli.common import say
+from gmr.cli.common import options_given, say
 from gmr.listing import listed, quoted
 
 if TYPE_CHECKING:
@@ -120,22 +120,13 @@ def fitting_options(command: Command) -> Command:
     def taking(**values: Any) -> Any:
         keys = ("relation", "subject", "max_gap", "undo_swaps", "known_only", "picture")
         chosen = {key: values.pop(key) for key in keys}
-        fitting = Fitting(**chosen, as_json=values.pop("as_json"), given=_given(keys))
+        fitting = Fitting(**chosen, as_json=values.pop("as_json"), given=options_given(*keys))
         return command(fitting=fitting, **values)
 
     wrapped: Any = taking
     for option in reversed(options):
         wrapped = option(wrapped)
     return wrapped  # type: ignore[no-any-return]
-
-
-def _given(keys: tuple[str, ...]) -> tuple[str, ...]:
-    """Those of the options that were not left to their defaults, as they are written."""
-    context = click.get_current_context()
-    default = click.core.ParameterSource.DEFAULT
-    return tuple(
-        f"--{key.replace('_', '-')}" for key in keys if context.get_parameter_source(key) is not default
-    )
 
 
 def marker_page(path: str, of: MarkerDescription) -> str:

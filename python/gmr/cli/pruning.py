@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import textwrap
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from gmr.cli.outcome import at_place
+from gmr.cli.paragraphs import listed_sentences, paragraph
 from gmr.cli.plain_rows import plain_rows
 from gmr.cli.progress import Phases
 
@@ -37,13 +36,9 @@ class Pruned:
         from gmr.pruning.manifest import files_words
         from gmr.pruning.words import headline, sentences
 
-        width = min(shutil.get_terminal_size((100, 24)).columns, 100)
-        lines = ["", *textwrap.wrap(headline(self.found, self.written), width), ""]
-        for sentence in sentences(self.found):
-            lines += textwrap.wrap(sentence, width, initial_indent="- ", subsequent_indent="  ")
-        files = files_words(self.written)
-        lines += textwrap.wrap(files, width, initial_indent="- ", subsequent_indent="  ")
-        return "\n".join([*lines, "", f"Smaller dataset: {self.written.folder}"])
+        first = paragraph(headline(self.found, self.written))
+        told = listed_sentences([*sentences(self.found), files_words(self.written)])
+        return "\n".join(["", *first, "", *told, "", f"Smaller dataset: {self.written.folder}"])
 
     def section(self) -> Section:
         """For the report."""

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import shutil
-import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from gmr.cli.paragraphs import listed_sentences, paragraph
 from gmr.cli.plain_rows import plain_row, plain_rows
 
 if TYPE_CHECKING:
@@ -32,10 +31,7 @@ class Tuned:
         """For a terminal."""
         from gmr.evaluation.tuning.words import headline, sentences
 
-        width = min(shutil.get_terminal_size((100, 24)).columns, 100)
-        lines = ["", *textwrap.wrap(headline(self.found), width), ""]
-        for sentence in sentences(self.found):
-            lines += textwrap.wrap(sentence, width, initial_indent="- ", subsequent_indent="  ")
+        lines = ["", *paragraph(headline(self.found)), "", *listed_sentences(sentences(self.found))]
         return "\n".join(lines)
 
     def section(self) -> Section:

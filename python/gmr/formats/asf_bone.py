@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
@@ -15,6 +16,8 @@ __all__ = ["BoneItems", "axis_order", "read_root_item", "why_no_name"]
 
 _TURNS: Final = ("rx", "ry", "rz")
 _MOVES: Final = ("tx", "ty", "tz")
+_UNIT_WITHIN: Final = 1e-3
+"""How far from 1 the length of a direction may be for being printed in few digits."""
 _LIMIT = re.compile(r"\(\s*([^\s(),]+)[\s,]+([^\s(),]+)\s*\)")
 _INFINITE: Final = {"-inf": -float("inf"), "inf": float("inf"), "+inf": float("inf")}
 _NOTES: Final = ("bodymass", "cofmass")
@@ -101,6 +104,7 @@ class BoneItems:
         for item in ("name", "direction", "length"):
             if item not in self.items:
                 raise failure(self.text, line, f"{self.title} has no {item}. Write it before its end.", item)
+        self.check_direction(line)
         dofs = self.items.get("dof", ())
         return Bone(
             name=self.items["name"],
@@ -113,6 +117,14 @@ class BoneItems:
             number=self.items.get("id", str(place)),
             notes=tuple(self.notes),
         )
+
+    def check_direction(self, line: Line) -> None:
+        """Warns of a direction that makes the bone longer or shorter than its length says."""
+        size, length = math.hypot(*self.items["direction"]), self.items["length"]
+        if length and abs(size - 1) > _UNIT_WITHIN:
+            what = f"{self.title} has a direction of length {size:.6g}, not 1"
+            long = f"with the length {length:.6g} it is {size * length:.6g} long"
+            self.text.odd(f"{what}: {long}. Write a direction of length 1.", at=line.at, kind="direction")
 
     def pairs(self, count: int) -> tuple[Limits, ...]:
         """The limits, a pair for each of ``count`` degrees of freedom."""

@@ -92,7 +92,8 @@ class OffLength(NamedTuple):
     frame: int
 
     def __str__(self) -> str:
-        return f"{self.quaternions:,} quaternions are not of length 1, the first in frame {self.frame}"
+        many = "1 quaternion is" if self.quaternions == 1 else f"{self.quaternions:,} quaternions are"
+        return f"{many} not of length 1, the first in frame {self.frame}"
 
 
 def off_length(pose: Pose) -> OffLength | None:
