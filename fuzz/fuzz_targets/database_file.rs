@@ -12,7 +12,7 @@ use gmr_core::matching::database::Database;
 use gmr_core::matching::features::Schema;
 use gmr_core::matching::file::{Labels, check, open, save};
 use gmr_core::matching::index::{Hit, Query, brute_force};
-use gmr_core::matching::matcher::Settings;
+use gmr_core::matching::settings::Settings;
 use gmr_core::matching::path::Segment;
 use gmr_core::matching::request::Tracking;
 use gmr_core::matching::root::RootTrack;

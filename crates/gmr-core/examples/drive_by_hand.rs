@@ -11,8 +11,9 @@ use glam::DVec2;
 use gmr_core::matching::character::Character;
 use gmr_core::matching::file::open;
 use gmr_core::matching::ground::{Placement, direction};
-use gmr_core::matching::matcher::{Settings, Status};
+use gmr_core::matching::matcher::Status;
 use gmr_core::matching::playback::HALF_LIFE;
+use gmr_core::matching::settings::Settings;
 
 /// Seconds, and what the stick asks for: metres a second, and a heading in degrees, positive to the left.
 const SCRIPT: [(f64, f64, f64); 6] = [

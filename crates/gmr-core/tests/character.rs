@@ -9,10 +9,10 @@ use glam::{DVec2, Quat, Vec3};
 use gmr_core::matching::character::{Character, CharacterError, LONGEST_STEP};
 use gmr_core::matching::database::Database;
 use gmr_core::matching::ground::Placement;
-use gmr_core::matching::matcher::Settings;
 use gmr_core::matching::path::{ReferencePath, Segment};
 use gmr_core::matching::playback::{HALF_LIFE, Playback, shown_positions};
 use gmr_core::matching::request::Tracking;
+use gmr_core::matching::settings::Settings;
 use gmr_core::matching::trial::{Profile, Progress, TrialLog, Trials, run_trials};
 use synthetic::{RATE, Skeleton, Walk, database, database_at, database_with_a_past};
 

@@ -2,11 +2,12 @@
 
 mod synthetic;
 
-use gmr_core::matching::builder::DatabaseError;
 use gmr_core::matching::database::Database;
-use gmr_core::matching::matcher::{Settings, Status};
+use gmr_core::matching::database_error::DatabaseError;
+use gmr_core::matching::matcher::Status;
 use gmr_core::matching::path::Segment;
 use gmr_core::matching::request::Tracking;
+use gmr_core::matching::settings::Settings;
 use gmr_core::matching::trial::{Profile, Progress, TrialLog, Trials, run_trials};
 use proptest::prelude::*;
 use synthetic::{Walk, database, database_scaled_as, database_with_a_past};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use gmr_core::matching::character::Character;
 use gmr_core::matching::database::Database;
 use gmr_core::matching::ground::Placement;
-use gmr_core::matching::matcher::Settings;
+use gmr_core::matching::settings::Settings;
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;

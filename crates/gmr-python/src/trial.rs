@@ -1,7 +1,7 @@
 //! Binding of `trial`: many trials at once, their logs as columns.
 
-use gmr_core::matching::matcher::Settings;
 use gmr_core::matching::path::Segment;
+use gmr_core::matching::settings::Settings;
 use gmr_core::matching::trial::{LoggedStep, Profile, Progress, TrialLog, Trials, run_trials};
 use numpy::ndarray::Array2;
 use numpy::{Element, IntoPyArray};

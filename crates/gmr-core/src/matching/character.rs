@@ -4,7 +4,7 @@
 //! # use gmr_core::matching::character::Character;
 //! # use gmr_core::matching::database::Database;
 //! # use gmr_core::matching::ground::Placement;
-//! # use gmr_core::matching::matcher::Settings;
+//! # use gmr_core::matching::settings::Settings;
 //! # use gmr_core::matching::playback::HALF_LIFE;
 //! # fn play(database: &Database) -> Result<(), Box<dyn std::error::Error>> {
 //! let mut character = Character::new(database, &Settings::default(), HALF_LIFE, Placement::default())?;
@@ -35,8 +35,9 @@ use super::database::Database;
 use super::features::TrajectorySample;
 use super::ground::Placement;
 use super::index::IndexError;
-use super::matcher::{Choice, Matcher, Settings, SettingsError};
+use super::matcher::{Choice, Matcher};
 use super::request::Target;
+use super::settings::{Settings, SettingsError};
 use super::start::Starts;
 use crate::error::{JobError, ShapeError, TopologyError};
 use crate::kinematics::plan::Plan;

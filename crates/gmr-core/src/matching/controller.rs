@@ -7,9 +7,10 @@ use super::database::Database;
 use super::features::TrajectorySample;
 use super::ground::Placement;
 use super::index::IndexError;
-use super::matcher::{Choice, Matcher, Settings};
+use super::matcher::{Choice, Matcher};
 use super::path::ReferencePath;
 use super::request::{Target, Tracking};
+use super::settings::Settings;
 use super::start::Starts;
 
 /// A character on its way through one trial.

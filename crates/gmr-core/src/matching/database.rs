@@ -7,9 +7,10 @@
 use crate::error::ShapeError;
 use crate::matching::column::Column;
 use crate::matching::features::Schema;
+use crate::matching::ground::Step;
 use crate::matching::index::{Index, Query};
+use crate::matching::left::Left;
 use crate::matching::normalization::Normalization;
-use crate::matching::subset::Left;
 use crate::skeleton::Topology;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -21,27 +22,6 @@ pub struct Clip {
     pub rows: Range<u32>,
     /// Which of the database's bone sets its skeleton has; see [`Database::offsets`].
     pub bones: u32,
-}
-
-/// What the simulation root does from a row to the next one of its clip.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Step {
-    /// Displacement on the ground, `x` to the left and `z` forward, in the row's character frame, metres.
-    pub displacement: [f32; 2],
-    /// Change of heading, radians, positive counter-clockwise seen from above.
-    pub turn: f32,
-}
-
-impl From<[f32; 3]> for Step {
-    fn from([x, z, turn]: [f32; 3]) -> Self {
-        Self { displacement: [x, z], turn }
-    }
-}
-
-impl From<Step> for [f32; 3] {
-    fn from(Step { displacement: [x, z], turn }: Step) -> Self {
-        [x, z, turn]
-    }
 }
 
 /// All clips, their features and their poses; immutable once built.

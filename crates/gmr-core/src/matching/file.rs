@@ -28,8 +28,8 @@ use super::database::{Clip, Database, Rows};
 use super::features::{Group, Measure, Schema};
 use super::index::IndexError;
 use super::index::stored::Arrays;
+use super::left::Left;
 use super::normalization::Normalization;
-use super::subset::Left;
 use crate::skeleton::Topology;
 
 use fault::content;

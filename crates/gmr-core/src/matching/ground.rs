@@ -7,7 +7,26 @@ use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
 use glam::DVec2;
 
-use super::database::Step;
+/// What the simulation root does from a row to the next one of its clip.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Step {
+    /// Displacement on the ground, `x` to the left and `z` forward, in the row's character frame, metres.
+    pub displacement: [f32; 2],
+    /// Change of heading, radians, positive counter-clockwise seen from above.
+    pub turn: f32,
+}
+
+impl From<[f32; 3]> for Step {
+    fn from([x, z, turn]: [f32; 3]) -> Self {
+        Self { displacement: [x, z], turn }
+    }
+}
+
+impl From<Step> for [f32; 3] {
+    fn from(Step { displacement: [x, z], turn }: Step) -> Self {
+        [x, z, turn]
+    }
+}
 
 /// A point of the ground and the heading there.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
 use super::database::Database;
-use super::matcher::Settings;
+use super::settings::Settings;
 
 /// Starting rows in a database.
 #[derive(Debug)]

@@ -5,39 +5,13 @@
 //! its number, its features and their scale, so that trials on whole clips are, bit by bit, those on a database built
 //! of these clips with the same [`super::normalization::Normalization`].
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
-use super::builder::DatabaseError;
-use super::column::Column;
 use super::database::Database;
+use super::database_error::DatabaseError;
 use super::index::Index;
+use super::left::Left;
 use crate::error::ShapeError;
-
-/// Which rows of a database are left (N), and which of them may be jumped to (N).
-#[derive(Debug, Clone)]
-pub(super) struct Left {
-    /// 0 where a row is gone.
-    rows: Column<u8>,
-    /// Made when it is asked for.
-    candidates: OnceLock<Vec<bool>>,
-}
-
-impl Left {
-    /// Those that are not 0.
-    pub(super) fn new(rows: impl Into<Column<u8>>) -> Self {
-        Self { rows: rows.into(), candidates: OnceLock::new() }
-    }
-
-    pub(super) fn has(&self, row: u32) -> bool {
-        self.rows[row as usize] != 0
-    }
-
-    /// As a file keeps them.
-    #[cfg(feature = "file")]
-    pub(super) fn rows(&self) -> &[u8] {
-        &self.rows
-    }
-}
 
 impl Database {
     /// The rows for which `left` holds (N), of those that were left so far; the poses are shared, the index is new and
@@ -65,7 +39,7 @@ impl Database {
         let whole = || self.rows.candidates.get_or_init(|| self.with_their_window());
         match &self.left {
             None => whole(),
-            Some(left) => left.candidates.get_or_init(|| self.with_their_support(left, whole())),
+            Some(left) => left.candidates(|rows| self.with_their_support(rows, whole())),
         }
     }
 
@@ -76,10 +50,10 @@ impl Database {
     }
 
     /// The candidates of which all rows are left that their features look at.
-    fn with_their_support(&self, left: &Left, candidates: &[bool]) -> Vec<bool> {
+    fn with_their_support(&self, left: &[u8], candidates: &[bool]) -> Vec<bool> {
         let (past, future) = (self.schema().past(), self.schema().future());
-        let mut gone_before = vec![0_u32; left.rows.len() + 1];
-        for (row, &left) in left.rows.iter().enumerate() {
+        let mut gone_before = vec![0_u32; left.len() + 1];
+        for (row, &left) in left.iter().enumerate() {
             gone_before[row + 1] = gone_before[row] + u32::from(left == 0);
         }
         let is_whole = |(row, &candidate): (usize, &bool)| {

@@ -7,9 +7,10 @@ use super::controller::Controller;
 use super::database::Database;
 use super::ground::Placement;
 use super::index::IndexError;
-use super::matcher::{Choice, Settings, SettingsError};
+use super::matcher::Choice;
 use super::path::{PathError, ReferencePath, Segment};
 use super::request::Tracking;
+use super::settings::{Settings, SettingsError};
 use super::start::Starts;
 use crate::parallel::for_each_chunk;
 

@@ -3,8 +3,8 @@
 use super::Kernels;
 use super::Work;
 use super::axes::BLOCKS_AT_ONCE;
-use super::traverse::Kernel;
-use super::tree::W;
+use super::kernel::Kernel;
+use super::layout::W;
 use super::turned::Turned;
 use crate::parallel::{for_each_chunk, join, thread_count};
 

@@ -4,8 +4,8 @@ use std::arch::x86_64::*;
 
 use super::Work;
 use super::codes::{FURTHEST, Pair, both};
-use super::traverse::Kernel;
-use super::tree::{Edges, Lanes, edges};
+use super::kernel::Kernel;
+use super::layout::{Edges, Lanes, edges};
 use crate::Isa;
 
 /// Proof that this machine has AVX2 and FMA.

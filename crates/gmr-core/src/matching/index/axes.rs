@@ -6,7 +6,7 @@
 //! A turn changes no distance, so bounds on turned coordinates bound costs; costs themselves never see them.
 
 use super::codes::MOST_CODED;
-use super::tree::W;
+use super::layout::{W, larger};
 
 /// Rounds of rotations after which off-diagonal numbers are far below rounding; each squares what is left.
 const MOST_SWEEPS: usize = 12;
@@ -117,18 +117,6 @@ pub(super) fn size(turned: &[[f32; W]]) -> f32 {
         largest = std::array::from_fn(|lane| larger(block[lane].abs(), largest[lane]));
     }
     largest.into_iter().fold(0.0, larger)
-}
-
-/// The larger of two numbers, in one instruction.
-#[inline(always)]
-pub(super) fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
-/// The smaller of two numbers, in one instruction.
-#[inline(always)]
-pub(super) fn smaller(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
 }
 
 /// A coordinate in `f32`. What is cut off of very large ones brings rows nearer, never further apart.

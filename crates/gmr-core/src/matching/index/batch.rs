@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::best::{Nearest, Ranked};
 use super::codes::MOST_CODED;
 use super::error::{check_weights, first_not_finite};
-use super::tree::W;
+use super::layout::W;
 use super::{Hit, Index, IndexError, Query};
 use crate::error::ShapeError;
 use crate::parallel::for_each_chunk;

@@ -1,8 +1,8 @@
 //! Boxes around what is below them, from the leaves up.
 
 use super::super::aligned::Aligned;
-use super::axes::{larger, smaller};
-use super::tree::{Edges, Lanes, Levels, W, block, edges};
+use super::layout::{Edges, Lanes, W, block, edges, larger, smaller};
+use super::tree::Levels;
 use crate::parallel::for_each_chunk;
 
 /// Nodes that a thread makes at a time.

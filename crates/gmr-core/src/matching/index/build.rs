@@ -5,8 +5,10 @@ use super::arrange::arrange;
 use super::axes::Axes;
 use super::boxes::nodes_above;
 use super::codes::Codes;
-use super::traverse::Kernel;
-use super::tree::{Levels, Tree, View, W};
+use super::kernel::Kernel;
+use super::layout::W;
+use super::rows::Rows;
+use super::tree::{Levels, Tree, View};
 use super::turned::Turned;
 use super::{Kernels, Work};
 use crate::parallel::for_each_part;
@@ -19,14 +21,6 @@ const LEAVES_AHEAD: usize = 2;
 
 /// Frames looked at to put the dimensions in the order of their spread, and to find the axes.
 const LARGE_SAMPLE: usize = 4096;
-
-/// Features and tags of the candidates of a database.
-pub(super) struct Rows<'a> {
-    pub(super) features: &'a [f32],
-    pub(super) dims: usize,
-    pub(super) candidates: &'a [bool],
-    pub(super) tags: Option<&'a [u32]>,
-}
 
 /// What becomes the leaves of a [`Tree`].
 struct Leaves {
@@ -89,11 +83,6 @@ impl Rows<'_> {
             kernels.run(FillLeaves { all: self, order, frames, rows });
         });
         leaves
-    }
-
-    /// The candidates.
-    pub(super) fn frames(&self) -> Vec<u32> {
-        (0..self.candidates.len() as u32).filter(|&frame| self.candidates[frame as usize]).collect()
     }
 
     /// The dimensions, that in which the frames spread most first.

@@ -1,7 +1,7 @@
 //! Whether an index is that of some rows, in full: every number of it is looked at.
 
 use super::boxes::nodes_above;
-use super::build::Rows;
+use super::rows::Rows;
 use super::tree::{Tree, View};
 use super::{Index, IndexError, Kernels};
 use crate::error::ShapeError;

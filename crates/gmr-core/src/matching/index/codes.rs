@@ -6,9 +6,8 @@
 //! the way. So what is summed is never above the squared distance.
 
 use super::super::column::Column;
-use super::axes::{larger, smaller};
-use super::traverse::Kernel;
-use super::tree::W;
+use super::kernel::Kernel;
+use super::layout::{W, larger, smaller};
 
 /// The codes of two axes for each of eight boxes or rows.
 pub(super) type Pair = [[u8; 2]; W];

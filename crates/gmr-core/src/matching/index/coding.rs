@@ -1,12 +1,13 @@
 //! How nodes and leaves come to their codes: from the bottom up, level by level, the nodes of a level by many threads.
 
 use super::super::aligned::Aligned;
-use super::axes::{Axes, axis_blocks, larger, smaller};
+use super::axes::{Axes, axis_blocks};
 use super::codes::{
     BOX_PAIR, Codes, FINEST, Grid, MOST_CODED, PARTS, ROW_PAIR, SHORTEST, STEPS, grid_width, nearest, pairs,
 };
-use super::traverse::Kernel;
-use super::tree::{Levels, W};
+use super::kernel::Kernel;
+use super::layout::{W, larger, smaller};
+use super::tree::Levels;
 use super::turned::Turned;
 use super::{Kernels, Work};
 use crate::parallel::for_each_part;

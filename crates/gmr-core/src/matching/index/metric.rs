@@ -7,8 +7,9 @@
 use super::Query;
 use super::axes::{axis_blocks, size};
 use super::codes::{MOST_CODED, Placed};
-use super::traverse::Kernel;
-use super::tree::{Lanes, View, W, Width};
+use super::kernel::Kernel;
+use super::layout::{Lanes, W};
+use super::tree::{View, Width};
 
 /// Dimensions summed between two looks at whether the frames of a leaf are already too far.
 const STRIDE: usize = 8;

@@ -21,9 +21,12 @@ mod check;
 mod codes;
 mod coding;
 mod error;
+mod kernel;
+mod layout;
 mod metric;
 #[cfg(target_arch = "aarch64")]
 mod neon;
+mod rows;
 mod scalar;
 #[cfg(feature = "file")]
 mod seal;
@@ -42,13 +45,15 @@ pub use error::IndexError;
 
 use crate::Isa;
 use best::{Best, Nearest, Ranked};
-use build::Rows;
 use codes::MOST_CODED;
 pub(super) use error::check_weights;
 use error::{check_query, check_rows};
+use kernel::Kernel;
+use layout::W;
 use metric::{Even, Metric, Weighted};
-use traverse::{Kernel, search, search_all};
-use tree::{Fixed, Tree, View, W, Width};
+use rows::Rows;
+use traverse::{search, search_all};
+use tree::{Fixed, Tree, View, Width};
 
 /// The width of [`super::features::Schema::locomotion`], for which searches are compiled once more.
 const USUAL_DIMS: usize = 27;

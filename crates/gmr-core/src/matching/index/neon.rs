@@ -3,8 +3,8 @@
 use std::arch::aarch64::*;
 
 use super::codes::{FURTHEST, both};
-use super::traverse::Kernel;
-use super::tree::{Edges, Lanes, edges};
+use super::kernel::Kernel;
+use super::layout::{Edges, Lanes, edges};
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Neon;

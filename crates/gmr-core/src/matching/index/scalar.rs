@@ -1,8 +1,8 @@
 //! The definition of the kernels, one lane after another.
 
 use super::codes::{gap, place};
-use super::traverse::Kernel;
-use super::tree::{Edges, Lanes, edges};
+use super::kernel::Kernel;
+use super::layout::{Edges, Lanes, edges};
 
 /// Plain Rust, any number of lanes.
 #[derive(Debug, Clone, Copy)]

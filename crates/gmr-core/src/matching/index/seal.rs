@@ -9,7 +9,8 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use super::super::column::Column;
 use super::IndexError;
-use super::tree::{View, W, Width, edges};
+use super::layout::{W, edges};
+use super::tree::{View, Width};
 
 /// The sums of all blocks, the leaves first, and what is known of the blocks.
 #[derive(Debug)]

@@ -3,10 +3,10 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::super::aligned::Aligned;
-use super::axes::{Axes, axis_blocks, larger, size};
-use super::build::Rows;
-use super::traverse::Kernel;
-use super::tree::W;
+use super::axes::{Axes, axis_blocks, size};
+use super::kernel::Kernel;
+use super::layout::{W, larger};
+use super::rows::Rows;
 use super::{Kernels, Work};
 use crate::parallel::for_each_part;
 

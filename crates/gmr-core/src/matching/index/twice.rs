@@ -1,8 +1,8 @@
 //! Eight lanes on a machine that has four: all trees have eight.
 
 use super::codes::Pair;
-use super::traverse::Kernel;
-use super::tree::{Edges, Lanes};
+use super::kernel::Kernel;
+use super::layout::{Edges, Lanes};
 
 /// The lower four lanes and the upper four, one after the other.
 #[derive(Debug, Clone, Copy)]
