@@ -6,6 +6,7 @@
 //! equal, seen through a quarter turn about the middle axis.
 
 use super::euler_block::{EulerBlock, compose};
+use super::euler_columns::{Axes, EulerColumns};
 use super::half_angle::half_angle_of;
 use super::quaternion::{multiply_axis, normalize, rotate};
 use crate::Isa;
@@ -13,50 +14,10 @@ use crate::error::{JobError, ShapeError};
 use crate::lanes::rows::{SourceRows, TargetRows, blocks};
 use crate::lanes::{Kernel, Lanes, Real, cache};
 
-/// Three axes in composing order; 0: x, 1: y, 2: z.
-pub type Axes = [u8; 3];
-
-/// Where the angles of each slot stand in a row, and about which axes they turn.
-#[derive(Debug, Clone, Copy)]
-pub struct EulerColumns<'a> {
-    /// (S, 3): the column of each angle, -1 where there is none (angle 0).
-    pub columns: &'a [[i32; 3]],
-    /// (S, 3): the axis of each angle, in composing order.
-    pub axes: &'a [Axes],
-}
-
 impl EulerColumns<'_> {
-    /// `Ok` when every column is in a row of `column_count` numbers and every axis is one of three.
-    pub(crate) fn check(&self, column_count: usize) -> Result<(), JobError> {
-        ShapeError::check("rotation_axes", 3 * self.columns.len(), 3 * self.axes.len())?;
-        check_indices("rotation_columns", self.columns.as_flattened(), column_count)?;
-        match self.axes.as_flattened().iter().position(|&axis| axis > 2) {
-            None => Ok(()),
-            Some(at) => {
-                let found = self.axes.as_flattened()[at].into();
-                Err(JobError::Index { what: "rotation_axes", at, found, count: 3 })
-            }
-        }
-    }
-
     /// The rotation of one slot in one row of degrees.
     pub(crate) fn quaternion<T: Real>(&self, slot: usize, row: &[f64]) -> [T; 4] {
         compose(self.turns(slot).map(|(column, axis)| (half_angle_of::<T>(row[column]), axis)))
-    }
-
-    /// The columns and axes of a slot's angles, in composing order.
-    pub(super) fn turns(&self, slot: usize) -> impl Iterator<Item = (usize, u8)> {
-        let turns = self.columns[slot].into_iter().zip(self.axes[slot]);
-        turns.filter_map(|(column, axis)| usize::try_from(column).ok().map(|column| (column, axis)))
-    }
-}
-
-/// `Ok` when every index is below `count`, or -1.
-pub(crate) fn check_indices(what: &'static str, indices: &[i32], count: usize) -> Result<(), JobError> {
-    let inside = |&index: &i32| index == -1 || usize::try_from(index).is_ok_and(|index| index < count);
-    match indices.iter().position(|index| !inside(index)) {
-        None => Ok(()),
-        Some(at) => Err(JobError::Index { what, at, found: indices[at].into(), count }),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::euler::EulerColumns;
+use super::euler_columns::EulerColumns;
 use super::half_angle::{Steps, halves, is_large, squares, without_turns};
 use super::quaternion::multiply_axis;
 use crate::lanes::rows::{SourceRows, groups};

@@ -5,16 +5,16 @@
 
 mod euler;
 mod euler_block;
+mod euler_columns;
 mod half_angle;
 mod quaternion;
 mod slerp;
 mod turn_slots;
 
-pub(crate) use euler::check_indices;
-pub use euler::{
-    Axes, EulerColumns, euler_to_quaternions, quaternions_to_euler, turned_euler_to_quaternions,
-};
+pub use euler::{euler_to_quaternions, quaternions_to_euler, turned_euler_to_quaternions};
 pub(crate) use euler_block::EulerBlock;
+pub(crate) use euler_columns::check_indices;
+pub use euler_columns::{Axes, EulerColumns};
 pub(crate) use quaternion::cross;
 pub use quaternion::{
     IDENTITY_F32, IDENTITY_F64, conjugate, dot, exp, log, multiply, multiply_axis, multiply_inverse,

@@ -1,36 +1,15 @@
 //! The job: a skin, and where its joints are in each frame.
 
-use std::ops::Range;
-
-use super::arrangement::{Run, WINDOW};
+use super::arrangement::WINDOW;
 use super::bones::{self, Bones};
-use super::skin::Points;
+use super::method::Method;
+use super::work::{Frame, Work};
 use super::{Skin, SkinError, block};
 use crate::Isa;
 use crate::error::ShapeError;
 use crate::kinematics::{Piece, take};
 use crate::lanes::cache;
 use crate::parallel::for_each_piece;
-
-/// Which of `q` and `-q` an influence adds to the sum: the one that points as...
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hemisphere {
-    /// ...that of the joint that weighs most for the vertex (of equal ones the first).
-    Pivot,
-    /// ...the sum of the influences before it. What Blender does; it depends on their order.
-    Running,
-}
-
-/// How transforms are blended.
-#[derive(Debug, Clone, Copy)]
-pub enum Method<'a> {
-    /// Linear blending.
-    Linear,
-    /// Dual quaternion blending, scale and shear linearly before it.
-    DualQuaternion(Hemisphere),
-    /// About the vertices' centres of rotation (V, 3), from [`super::centers_of_rotation`].
-    Centers(&'a [f32]),
-}
 
 /// The job.
 #[derive(Debug, Clone, Copy)]
@@ -112,35 +91,6 @@ pub fn blend_on(isa: Isa, job: &Blend<'_>, out: Blended<'_>) -> Result<(), SkinE
         block::run(isa, &work, &mut frames);
     });
     Ok(())
-}
-
-/// What one thread does at a time, in each of some frames.
-pub(super) struct Work<'a> {
-    pub(super) skin: &'a Skin,
-    pub(super) method: Method<'a>,
-    /// Of each block, where the method has any.
-    pub(super) centers: &'a [Points],
-    pub(super) windows: Range<usize>,
-    /// Whether the answer for all frames outgrows the caches.
-    pub(super) is_large: bool,
-}
-
-impl Work<'_> {
-    /// The first vertex and the runs of each window.
-    pub(super) fn windows(&self) -> impl Iterator<Item = (usize, &[Run])> {
-        self.skin.windows().skip(self.windows.start).take(self.windows.len())
-    }
-
-    pub(super) fn first_vertex(&self) -> usize {
-        self.windows.start * WINDOW
-    }
-}
-
-/// A frame's bones, and room for the vertices of the work.
-pub(super) struct Frame<'a> {
-    pub(super) bones: Bones,
-    pub(super) positions: &'a mut [f32],
-    pub(super) normals: Option<&'a mut [f32]>,
 }
 
 /// The rows of frames, each cut into the vertices of a piece.

@@ -4,12 +4,13 @@
 //! in the caller's order, from where they go out one after the other.
 
 use super::arrangement::{Arrangement, Follows, Run, WIDEST, WINDOW};
-use super::blend::{Frame, Hemisphere, Method, Work};
-use super::bones::Bones;
+use super::lines::{Points, Wide};
+use super::method::{Hemisphere, Method};
 use super::methods::{Blending, Centers, Linear, Pivot, Rest, Running};
 use super::scalar;
-use super::skin::{Points, Skin, Wide};
+use super::skin::Skin;
 use super::sums::{At, Each, Influences, MANY, Same};
+use super::work::{Frame, Window, Work};
 use crate::Isa;
 use crate::lanes::{Kernel, Lanes, Real, cache};
 
@@ -131,17 +132,6 @@ fn pack(answers: &[[f32; 4]], out: &mut [f32]) {
     for (answer, out) in answers[done..].iter().zip(out[3 * done..].as_chunks_mut::<3>().0) {
         *out = [answer[0], answer[1], answer[2]];
     }
-}
-
-/// A window in a frame.
-#[derive(Clone, Copy)]
-pub(super) struct Window<'a> {
-    pub(super) work: &'a Work<'a>,
-    pub(super) bones: &'a Bones,
-    /// The first vertex.
-    pub(super) start: usize,
-    /// Whether it is yet to be fetched.
-    is_far: bool,
 }
 
 #[inline(always)]

@@ -2,18 +2,10 @@
 
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 
-use super::blend::{Hemisphere, Method};
+use super::lines::Row;
+use super::method::{Hemisphere, Method};
 use super::polar::rotation_and_stretch;
 use super::{Skin, SkinError};
-
-/// The numbers of a joint: one cache line, a whole number of registers of any width.
-#[derive(Debug, Clone, Copy)]
-#[repr(align(64))]
-pub(super) struct Row(pub(super) [f32; 16]);
-
-impl Row {
-    pub(super) const ZERO: Self = Self([0.0; 16]);
-}
 
 /// The joints of a frame.
 #[derive(Debug, Default)]

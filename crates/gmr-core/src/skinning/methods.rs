@@ -1,10 +1,10 @@
 //! What each method does with the sums of a register of vertices.
 
 use super::arrangement::{Arrangement, Follows, Run, WIDEST};
-use super::block::Window;
 use super::formulas::{add, move_by, subtract, transform, transform_normal, turn_by};
-use super::skin::Wide;
+use super::lines::Wide;
 use super::sums::{At, Influences, Rows, dual_quaternion, matrix};
+use super::work::Window;
 use crate::lanes::Lanes;
 
 /// What stays of the vertices of a register.

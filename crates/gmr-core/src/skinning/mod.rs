@@ -44,6 +44,8 @@ mod bones;
 mod centers;
 mod error;
 mod formulas;
+mod lines;
+mod method;
 mod methods;
 mod polar;
 mod running;
@@ -53,8 +55,10 @@ mod skin;
 mod sums;
 #[cfg(test)]
 mod tests;
+mod work;
 
-pub use blend::{Blend, Blended, Hemisphere, Method, blend, blend_on};
+pub use blend::{Blend, Blended, blend, blend_on};
 pub use centers::centers_of_rotation;
 pub use error::SkinError;
+pub use method::{Hemisphere, Method};
 pub use skin::Skin;

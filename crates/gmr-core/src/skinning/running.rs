@@ -1,8 +1,7 @@
 //! Signs by the sum so far.
 
 use super::arrangement::WIDEST;
-use super::bones::Row;
-use super::skin::Wide;
+use super::lines::{Row, Wide};
 use crate::rotation::dot;
 
 /// What a vertex follows: the vertex in `lane` of a block.

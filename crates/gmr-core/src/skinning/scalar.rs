@@ -1,10 +1,12 @@
 //! The definition: one vertex after the other, in plain numbers.
 
 use super::arrangement::WIDEST;
-use super::blend::{Frame, Hemisphere, Method, Work};
-use super::bones::{Bones, Row};
+use super::bones::Bones;
 use super::formulas::{Matrix, add, move_by, subtract, transform, transform_normal, turn_by};
-use super::skin::{Lane, Wide};
+use super::lines::{Row, Wide};
+use super::method::{Hemisphere, Method};
+use super::skin::Lane;
+use super::work::{Frame, Work};
 
 /// Works on the vertices of `work` in each frame.
 pub(super) fn run(work: &Work<'_>, frames: &mut [Frame<'_>]) {

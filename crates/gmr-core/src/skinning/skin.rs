@@ -2,21 +2,13 @@
 
 use super::SkinError;
 use super::arrangement::{Arrangement, Follows, Run, WIDEST, WINDOW, arrange};
-use super::bones::Row;
+use super::lines::{Points, Row, Wide};
 use super::running::Signing;
 use super::sets::Given;
 use crate::error::ShapeError;
 
 /// The most influences that a vertex can have.
 const MOST: usize = 1 << 16;
-
-/// A number of each vertex of a block: one cache line, a whole number of registers of any width.
-#[derive(Debug, Clone, Copy)]
-#[repr(align(64))]
-pub(super) struct Wide(pub(super) [f32; WIDEST]);
-
-/// The points of a block.
-pub(super) type Points = [Wide; 3];
 
 /// A mesh at rest and the joints that its vertices follow.
 #[derive(Debug, Clone)]

@@ -2,9 +2,9 @@
 //! [`super::scalar`].
 
 use super::arrangement::WIDEST;
-use super::bones::{Bones, Row};
+use super::bones::Bones;
 use super::formulas::Matrix;
-use super::skin::Wide;
+use super::lines::{Row, Wide};
 use crate::lanes::Lanes;
 
 /// Which rows are summed.

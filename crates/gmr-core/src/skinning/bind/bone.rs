@@ -10,8 +10,6 @@
 
 use glam::DVec3;
 
-use super::gradient::Near;
-
 /// How far a box reaches beyond the ends of its bone, and across where no vertex says: in lengths.
 const MARGIN: f64 = 0.35;
 
@@ -89,6 +87,19 @@ impl Boxed {
         let fall =
             if bone.open[1] { 1.0 } else { ((bone.length + margin - s) / (2.0 * margin)).clamp(0.0, 1.0) };
         rise * fall * across.min(1.0)
+    }
+}
+
+/// The bone nearest to a vertex; of equally near ones the first.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Near {
+    pub(super) bone: u32,
+    pub(super) distance_squared: f64,
+}
+
+impl Default for Near {
+    fn default() -> Self {
+        Self { bone: 0, distance_squared: f64::INFINITY }
     }
 }
 

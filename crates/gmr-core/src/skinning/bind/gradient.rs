@@ -2,25 +2,12 @@
 
 use glam::DVec3;
 
-use super::bone::{Bone, Boxed, Reach};
+use super::bone::{Bone, Boxed, Near, Reach};
 use super::strongest::Strongest;
 use crate::parallel::for_each_chunk;
 
 /// Vertices that a thread takes at a time.
 const CHUNK: usize = 1024;
-
-/// The bone nearest to a vertex; of equally near ones the first.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Near {
-    pub(super) bone: u32,
-    pub(super) distance_squared: f64,
-}
-
-impl Default for Near {
-    fn default() -> Self {
-        Self { bone: 0, distance_squared: f64::INFINITY }
-    }
-}
 
 pub(super) fn nearest(vertices: &[DVec3], bones: &[Bone], near: &mut [Near], threads: usize) {
     for_each_chunk(near, CHUNK, threads, |chunk, near| {

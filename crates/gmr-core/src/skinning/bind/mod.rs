@@ -22,9 +22,8 @@ use glam::DVec3;
 
 use crate::error::ShapeError;
 
-use bone::{Bone, Reach};
+use bone::{Bone, Near, Reach};
 pub use error::BindError;
-use gradient::Near;
 use strongest::Strongest;
 
 /// Joints that a vertex follows at most.
