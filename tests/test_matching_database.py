@@ -17,6 +17,7 @@ from gmr.errors import DatasetError
 from gmr.matching import LOCOMOTION, Database, Group, Schema
 from gmr.matching.prepare import in_metres_upright
 from gmr.motion import Motion
+from gmr.quaternions import multiply
 from gmr.skeleton import Skeleton
 from walkers import CMU, body, placed, walker
 
@@ -58,6 +59,52 @@ def test_a_motion_that_is_there_twice_counts_once() -> None:
     assert database.notes[0] == told
     assert not database.excluded
     assert not once.duplicates
+
+
+@pytest.mark.parametrize("again", ["said unit", "elsewhere", "half the rate", "few digits", "mirrored"])
+def test_a_motion_is_known_again_however_its_file_has_it(again: str) -> None:
+    walk = walker(3.0, 1.2, 0.4, fps=120)
+    files = {
+        "said unit": walk.to_unit("cm"),
+        "elsewhere": placed(walk, 2.0, (3.0, -1.0)),
+        "half the rate": walk[::2],
+        "few digits": Motion.from_pose(
+            walk.skeleton,
+            walk.rotations.round(6),
+            walk.translations.round(6),
+            walk.frame_time,
+            unit=walk.unit,
+        ),
+        "mirrored": walk.mirror(),
+    }
+    database = Database.build(
+        {"walk": walk, "again": files[again], "run": WALKS[1]}, mirror=again == "mirrored"
+    )
+    assert database.duplicates == {"again": "walk"}
+    alone = Database.build({"walk": walk, "run": WALKS[1]}, mirror=again == "mirrored")
+    assert database.features.tobytes() == alone.features.tobytes()
+
+
+def test_a_take_is_known_again_without_the_pose_that_a_converter_put_before_it(data: Path) -> None:
+    take = gmr.read(data / "cmu_07_01.bvh")
+    takes = {"take": take, "without": take[1:], "mirrored": take[1:].mirror()}
+    database = Database.build(takes, mirror=True, schema=SHORT)
+    assert database.duplicates == {"without": "take", "mirrored": "take"}
+    assert database.clip_names == ("take", "take (mirrored)")
+
+
+def test_motions_that_differ_by_a_millimetre_or_a_frame_are_two() -> None:
+    walk = walker(3.0, 1.2, 0.4)
+    nod = walk.rotations.copy()
+    nod[100, 1] = _turned_by(nod[100, 1], 0.005)
+    other = Motion.from_pose(walk.skeleton, nod, walk.translations, walk.frame_time, unit=walk.unit)
+    later = walk[1:]
+    assert not Database.build({"a": walk[:-1], "b": other[:-1], "c": later}).duplicates
+
+
+def _turned_by(rotation: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+    about_x = np.array([np.sin(angle / 2), 0.0, 0.0, np.cos(angle / 2)])
+    return np.asarray(multiply(rotation, about_x))
 
 
 def test_a_motion_with_other_tags_or_another_rate_is_another_clip() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from collections.abc import Iterator
 from dataclasses import fields, replace
 from pathlib import Path
@@ -100,10 +101,11 @@ def test_a_clip_that_is_there_twice_changes_nothing_and_goes(mirror: bool, tmp_p
 
     of = prune(among, "lossless")
     assert dict(of.lossless.ranges) == {**lossless(alone).ranges, **dict.fromkeys(copies, ())}
-    assert headline(of).startswith("2 clips that are there twice and ")
+    assert of.curve.points[0].part.seconds == pytest.approx(8.0 * 6 - 2 + 1.6 * 2, abs=0.1)
+    assert of.curve.points[-1].part.seconds <= 0.5 * of.curve.points[0].part.seconds
     assert sentences(of)[1] == (
-        "'left/short copy.bvh', the same motion as 'left/short.bvh', and 1 more go, too: the evaluation had "
-        "left them out."
+        "2 clips are the same motion as others ('left/short copy.bvh' as 'left/short.bvh' and 1 more) and "
+        "went first."
     )
     written = write_pruned(of, tmp_path / "twice", tmp_path / "smaller")
     assert written.identical
@@ -120,6 +122,33 @@ def test_a_clip_that_is_there_twice_changes_nothing_and_goes(mirror: bool, tmp_p
     ]
     in_words = (tmp_path / "smaller" / "manifest.md").read_text()
     assert "`slow (2).bvh`, all of it: the same motion as 'slow.bvh'." in in_words
+
+
+def test_where_copies_alone_are_as_much_as_shall_go_nothing_else_does(tmp_path: Path) -> None:
+    write_walkers(
+        tmp_path / "takes",
+        {name.replace(".", f"{copy}."): arc for name, arc in WALKS.items() for copy in ("", "_2", "_3")},
+    )
+    of = prune(gmr.evaluate(tmp_path / "takes", **GRID), "50%")
+    assert of.chosen.lossless
+    assert of.chosen.part.seconds == pytest.approx(8.0 * 4 + 6, abs=0.2)
+    assert headline(of) == "67% of the seconds can go, and every trial stays the same, bit by bit."
+    assert sorted(of.importance["clip"]) == sorted(WALKS)
+
+
+def test_a_file_whose_name_is_no_text_is_pruned_as_others_are(tmp_path: Path) -> None:
+    write_walkers(tmp_path / "takes", WALKS)
+    name = os.fsdecode(b"gr\xfcn.bvh")
+    (tmp_path / "takes" / "fast.bvh").rename(tmp_path / "takes" / name)
+    (tmp_path / "takes" / "broken.bvh").write_text("HIERARCHY")
+    of = prune(gmr.evaluate(tmp_path / "takes", **GRID), "lossless")
+    write_pruned(of, tmp_path / "takes", tmp_path / "smaller")
+    left = [path.name for path in (tmp_path / "smaller").iterdir() if path.suffix == ".bvh"]
+    assert [each for each in left if each.startswith(name[:3])]
+    told = json.loads((tmp_path / "smaller" / "manifest.json").read_text())
+    assert list(told["not_evaluated"]) == ["broken.bvh"]
+    assert any(file["of"] == "gr\\xfcn.bvh" for file in told["files"])
+    assert "- `broken.bvh`: " in (tmp_path / "smaller" / "manifest.md").read_text()
 
 
 def test_what_no_trial_shows_can_go(found: Evaluation) -> None:

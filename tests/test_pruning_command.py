@@ -49,7 +49,7 @@ def test_the_smaller_dataset_is_written_and_the_report_shows_why(
     assert run(folder, *SMALL, "--prune", "30%", *written) == 0
     assert {"coverage_scatter", "pruning_offset"} <= {path.stem for path in figures.iterdir()}
     said = capsys.readouterr()
-    told = "1 clip that is there twice and 33% of the seconds of all others can go; the new folder does "
+    told = "of the seconds can go, and every trial stays the same, bit by bit."
     assert told in " ".join(said.out.split())
     assert f"Smaller dataset: {out}" in said.out
     assert all(len(line) <= 100 for line in said.out.splitlines() if str(tmp_path) not in line)
@@ -158,7 +158,7 @@ def test_json_has_the_curve_and_the_importance(
     }
     assert found["folder"] == "pruned"
     assert found["curve"][0]["share_kept"] == 1.0
-    assert found["sentences"][1].startswith("'twin.bvh', the same motion as 'a.bvh', goes, too: ")
+    assert found["sentences"][1].startswith("'twin.bvh' is the same motion as 'a.bvh' and went first.")
     assert {row["clip"] for row in found["importance"]} == {"a.bvh", "b.bvh"}
     assert (tmp_path / "pruned" / "a.bvh").exists()
     assert not (tmp_path / "pruned" / "twin.bvh").exists()

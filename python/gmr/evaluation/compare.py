@@ -14,7 +14,7 @@ import numpy as np
 from gmr.errors import DatasetError
 from gmr.evaluation.comparison import Comparison, comparison_of
 from gmr.evaluation.evaluate import Source, evaluate
-from gmr.evaluation.reading import Read
+from gmr.evaluation.reading import Read, printable
 from gmr.evaluation.result import Evaluation, Tables
 from gmr.table import Table
 
@@ -68,16 +68,12 @@ def dataset_names(sources: Sequence[Source]) -> list[str]:
     """
     places = [Path(source).resolve() if isinstance(source, str | os.PathLike) else None for source in sources]
     names = [
-        _printable(place.name)
-        if place is not None
-        else source.name
-        if isinstance(source, Read)
-        else "motions"
+        printable(place.name) if place is not None else source.name if isinstance(source, Read) else "motions"
         for source, place in zip(sources, places, strict=True)
     ]
     alike = {name for name, times in Counter(names).items() if times > 1}
     names = [
-        _printable(f"{place.parent.name}/{place.name}") if place is not None and name in alike else name
+        printable(f"{place.parent.name}/{place.name}") if place is not None and name in alike else name
         for name, place in zip(names, places, strict=True)
     ]
     unique: list[str] = []
@@ -88,10 +84,6 @@ def dataset_names(sources: Sequence[Source]) -> list[str]:
             again = f"{name} ({number})"
         unique.append(again)
     return unique
-
-
-def _printable(text: str) -> str:
-    return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
 
 
 def renamed(evaluation: Evaluation, name: str) -> Evaluation:

@@ -59,6 +59,7 @@ class Assembly:
     """A database in the making."""
 
     builder: _core.DatabaseBuilder
+    schema: Schema
     excluded: dict[str, str]
     clip_names: list[str] = field(default_factory=list)
     mirrored: list[bool] = field(default_factory=list)
@@ -103,7 +104,7 @@ def assemble(
     except ValueError as error:
         raise DatasetError(str(error)) from error
     # The survey's own, so that its notes do not speak of what is left out here.
-    assembly = Assembly(builder, seen.excluded)
+    assembly = Assembly(builder, schema, seen.excluded)
     for name in seen.motions:
         try:
             take = _take(seen, name, rate, translated, (tags or {}).get(name))
@@ -112,9 +113,6 @@ def assemble(
                 assembly.add(take.image(image, translated))
         except (GmrError, ValueError) as error:
             assembly.excluded[name] = str(error)
-    for name, first in seen.duplicates.items():
-        if first in assembly.excluded:
-            assembly.excluded[name] = assembly.excluded[first]
     if not assembly.clip_names:
         first, why = next(iter(assembly.excluded.items()))
         raise DatasetError(
@@ -185,7 +183,7 @@ def _bits(tags: NDArray[np.uint32], motion: Motion, prepared: Motion, skipped: i
 
 def _check_tags(seen: Survey, tags: Tags) -> None:
     for name, given in tags.items():
-        if name in seen.excluded or name in seen.duplicates:
+        if name in seen.excluded:
             continue
         if name not in seen.motions:
             raise DatasetError(f"tags are given for '{name}', but no clip has this name")

@@ -19,8 +19,9 @@ from gmr.arrays import read_only
 from gmr.body.joints import Joints
 from gmr.errors import DatasetError
 from gmr.matching import saved
-from gmr.matching.assemble import Tags, assemble
+from gmr.matching.assemble import Assembly, Tags, assemble
 from gmr.matching.database_rows import DatabaseRows
+from gmr.matching.duplicates import duplicates, duplicates_note
 from gmr.matching.naming import named
 from gmr.matching.normalization import Normalization
 from gmr.matching.schema import LOCOMOTION, Schema
@@ -83,8 +84,8 @@ class Database(DatabaseRows):
         """The database of some clips.
 
         Args:
-            motions: the clips, by name or with names of their own; of those that are equal in all numbers and
-            tags one is used, the others are named in :attr:`duplicates`.
+            motions: the clips, by name or with names of their own; of those that are the same motion with the
+            same tags one is used, the others are named in :attr:`duplicates`.
             mirror: add the mirror image of each clip.
             pairs: joints of the two sides whose names do not tell that they belong together, for ``mirror``.
             schema: the features.
@@ -101,27 +102,44 @@ class Database(DatabaseRows):
         """
         if not 1 <= rate <= 1000:
             raise DatasetError(f"a database cannot have {rate} frames a second; give 1 to 1000")
-        seen = survey(named(motions), schema.span, names, unit, tags)
-        assembly = assemble(seen, schema, rate, mirror, pairs, tags)
-        offset, scale = (normalization.offset, normalization.scale) if normalization else (None, None)
         total = thread_count(threads)
+
+        def without(twice: Mapping[str, str]) -> Database:
+            # What is decided for all clips together is decided without those that are there twice.
+            seen = survey({n: given[n] for n in given if n not in twice}, schema.span, names, unit)
+            its_tags = {name: bits for name, bits in (tags or {}).items() if name not in twice}
+            return cls._of(seen, assemble(seen, schema, rate, mirror, pairs, its_tags), normalization, total)
+
+        given, twice = named(motions), dict[str, str]()
+        database = without(twice)
+        while more := duplicates(database, database.mirrored):
+            twice = {name: more.get(first, first) for name, first in twice.items()} | more
+            database = without(twice)
+        if not twice:
+            return database
+        return replace(database, duplicates=twice, notes=(duplicates_note(twice), *database.notes))
+
+    @classmethod
+    def _of(
+        cls, seen: Survey, assembly: Assembly, normalization: Normalization | None, threads: int
+    ) -> Database:
+        """The database of what was put together."""
+        offset, scale = (normalization.offset, normalization.scale) if normalization else (None, None)
         try:
-            core = assembly.builder.finish(offset, scale, total)
+            core = assembly.builder.finish(offset, scale, threads)
         except ValueError as error:
             raise DatasetError(str(error)) from error
         return cls(
             core=core,
-            schema=schema,
+            schema=assembly.schema,
             skeleton=seen.skeleton,
             joints=seen.joints,
             clip_names=tuple(assembly.clip_names),
             mirrored=read_only(np.array(assembly.mirrored, bool)),
             units=seen.units,
-            notes=_notes(seen, schema, core),
+            notes=_notes(seen, assembly.schema, core),
             excluded=assembly.excluded,
-            duplicates={
-                name: first for name, first in seen.duplicates.items() if name not in assembly.excluded
-            },
+            duplicates={},
             starts=read_only(np.array(assembly.starts)),
         )
 

@@ -7,14 +7,12 @@ from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from gmr.body.joints import Joints, find_joints
 from gmr.body.measures import Poses, turned_upright, up_axis
 from gmr.errors import DatasetError
 from gmr.forest import home
 from gmr.listing import quoted
-from gmr.matching.duplicates import duplicates, duplicates_note
 from gmr.matching.oddities import oddities
 from gmr.matching.prepare import in_metres_upright
 from gmr.matching.root import RootJoint, find_root_joint, joints_left_behind
@@ -66,8 +64,6 @@ class Survey:
     """Joints above the hips that stay behind in the world when the body walks away, the uppermost first."""
     excluded: dict[str, str]
     """Clips left out, by name, and why; those that cannot be assembled join them."""
-    duplicates: Mapping[str, str]
-    """Clips left out because another one is the same motion, by name, and the name of that one."""
     tell: Callable[[Container[str]], Iterator[str]]
     """What was guessed or done, in sentences that speak of no clip that is left out."""
 
@@ -82,7 +78,6 @@ def survey(
     shortest: float,
     names: Mapping[str, str | int] | None = None,
     unit: float | str | None = None,
-    tags: Mapping[str, ArrayLike] | None = None,
 ) -> Survey:
     """Looks through the clips of a dataset.
 
@@ -91,15 +86,13 @@ def survey(
         shortest: seconds that a clip must last for a frame of it to be matched.
         names: joints by role, where the caller knows them; see :func:`gmr.body.joints.find_joints`.
         unit: metres per file unit (or "cm", ...) of clips that do not say; guessed from the body by default.
-        tags: bits of clips by name; the same motion with other tags is another clip.
 
     Raises:
         DatasetError: no clip is usable or long enough, the clips have different skeletons, or the skeleton
         has no known body.
     """
     usable, excluded = _usable({name: home(motion) for name, motion in motions.items()})
-    twice = duplicates(usable, tags or {})
-    usable, skipped = _without_tposes({name: usable[name] for name in usable if name not in twice})
+    usable, skipped = _without_tposes(usable)
     usable, skeleton_notes = _on_one_skeleton(usable, excluded)
     _check_lengths(usable, shortest)
     sampled = {name: motion[:: max(1, motion.frame_count // _SAMPLES)] for name, motion in usable.items()}
@@ -119,8 +112,6 @@ def survey(
 
     def tell(left_out: Container[str]) -> Iterator[str]:
         left = {name: motion for name, motion in usable.items() if name not in left_out}
-        if told := {name: first for name, first in twice.items() if first in left}:
-            yield duplicates_note(told)
         yield from _tpose_notes(left, skipped)
         yield from skeleton_notes
         yield from _short_notes(left, shortest)
@@ -144,7 +135,6 @@ def survey(
         root=root,
         left_behind=joints_left_behind(skeleton, joints, upright),
         excluded=excluded,
-        duplicates=twice,
         tell=tell,
     )
 

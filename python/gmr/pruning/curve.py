@@ -1,9 +1,9 @@
 """Quality for size: frames go, those that matter least first, and after each step the trials are run again.
 
-What nobody needs goes first, the longest ranges before the others; from there on a greedy search: of the
-moves that touch least of what is played (a range goes, or a second at one of its ends) each is simulated
-alone, those that cost least a second are made until a step is full, and all of it is simulated again
-together.
+Clips that are there twice go first, then what nobody needs, the longest ranges before the others. From there
+on a greedy search: of the moves that touch least of what is played (a range goes, or a second at one of its
+ends) each is simulated alone, those that cost least a second are made until a step is full, and all of it is
+simulated again together.
 """
 
 from __future__ import annotations
@@ -153,13 +153,17 @@ def curve_of(
 def _unneeded_go(database: Database, part: Part, lossless: Part, goal: float) -> Iterator[Part]:
     """Smaller and smaller parts, a step apart and one at the goal, until only what is needed is left."""
     every = part.seconds
+    for name in database.duplicates:
+        part = part.without(name, part.ranges[name][0])
+    if database.duplicates:
+        yield part
     gone = [
         (recording.name, gap)
         for recording in recordings_of(database)
         for gap in gaps(recording.frames, lossless.ranges[recording.name])
     ]
     gone.sort(key=lambda each: each[1][0] - each[1][1])
-    told = every
+    told = part.seconds
     aim = (1 - goal) * every
     for name, gap in gone:
         part = part.without(name, gap)

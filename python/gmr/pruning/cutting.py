@@ -31,7 +31,7 @@ class Piece:
     """A file of the smaller dataset.
 
     Attributes:
-        file: its name, below the folder.
+        file: its path below the folder, as the file system has it.
         source: the recording that it is of.
         frames: first frame of the file that it is of, and one past the last; None: it is the whole file.
         begins: frame of the recording, at the database's rate, that its first one is.
@@ -47,12 +47,15 @@ class Piece:
         return motion if self.frames is None else motion[slice(*self.frames)]
 
 
-def pieces_of(database: Database, motions: Mapping[str, Motion], part: Part) -> list[Piece]:
+def pieces_of(
+    database: Database, motions: Mapping[str, Motion], paths: Mapping[str, str], part: Part
+) -> list[Piece]:
     """The files that a part is written to, in the order of the recordings.
 
     Args:
         database: of the whole dataset.
         motions: by the names of its recordings, as read.
+        paths: where each of them is below its folder, as the file system has it.
         part: what is left.
     """
     starts = dict(zip(database.clip_names, database.starts.tolist(), strict=True))
@@ -60,14 +63,17 @@ def pieces_of(database: Database, motions: Mapping[str, Motion], part: Part) -> 
     for recording in recordings_of(database):
         for first, end in part.ranges[recording.name]:
             if (first, end) == (0, recording.frames):
-                found.append(Piece(recording.name, recording.name, None, 0))
+                found.append(Piece(paths[recording.name], recording.name, None, 0))
             else:
-                motion = motions[recording.name]
-                found.append(_piece(recording, motion, starts[recording.name], database.rate, (first, end)))
+                motion, path = motions[recording.name], paths[recording.name]
+                start = starts[recording.name]
+                found.append(_piece(recording, motion, path, start, database.rate, (first, end)))
     return found
 
 
-def _piece(recording: Recording, motion: Motion, start: float, rate: float, part: tuple[int, int]) -> Piece:
+def _piece(
+    recording: Recording, motion: Motion, path: str, start: float, rate: float, part: tuple[int, int]
+) -> Piece:
     fps = nominal_fps(motion)
     step = Fraction(fps / rate).limit_denominator(_SIMPLE)
     simple = math.isclose(float(step) * rate, fps, rel_tol=1e-9)
@@ -77,7 +83,7 @@ def _piece(recording: Recording, motion: Motion, start: float, rate: float, part
     end = skipped + math.ceil((part[1] - 1) * fps / rate - 1e-6) + 1
     if part[1] == recording.frames or end > motion.frame_count:
         end = motion.frame_count
-    name = PurePosixPath(recording.name)
+    name = PurePosixPath(path)
     digits = len(str(motion.frame_count))
     numbers = f"{first:0{digits}}-{end - 1:0{digits}}"
     return Piece(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gmr.evaluation.reading import printable
 from gmr.evaluation.words import count, duration, number, percent
 from gmr.matching.database import Database
 from gmr.motion import Motion
@@ -43,7 +44,7 @@ def manifest(of: Pruning, written: Written, motions: Mapping[str, Motion]) -> st
         },
         "files": [
             {
-                "file": piece.file,
+                "file": printable(piece.file),
                 "of": piece.source,
                 "frames": "all" if piece.frames is None else [piece.frames[0], piece.frames[1] - 1],
                 "seconds": piece.of(motions[piece.source]).duration,
@@ -51,7 +52,7 @@ def manifest(of: Pruning, written: Written, motions: Mapping[str, Motion]) -> st
             for piece in written.pieces
         ],
         "gone": list(_gone(of, written)),
-        "not_evaluated": dict(database.excluded),
+        "not_evaluated": dict(of.failed),
     }
     return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
@@ -133,7 +134,7 @@ def manifest_words(of: Pruning, written: Written, motions: Mapping[str, Motion])
     lines = [
         f"# {of.dataset}, smaller",
         "",
-        f"{duration(before)} of motion were evaluated; {duration(after)} are here: {percent(share)} went. "
+        f"There were {duration(before)} of motion; {duration(after)} are here: {percent(share)} went. "
         + " ".join([*asked_sentence(of), *twice_sentence(of), cost_of_files(written)]),
         "",
         "| | mean offset, m | trials that hold |",
@@ -147,10 +148,11 @@ def manifest_words(of: Pruning, written: Written, motions: Mapping[str, Motion])
         "",
         *(_line(each) for each in gone),
         "",
+        *_not_evaluated(of),
         f"## What is here: {count(len(written.pieces), 'file')}",
         "",
         *(
-            f"- `{piece.file}`: "
+            f"- `{printable(piece.file)}`: "
             + (
                 "as it was, byte for byte"
                 if piece.frames is None
@@ -160,6 +162,14 @@ def manifest_words(of: Pruning, written: Written, motions: Mapping[str, Motion])
         ),
     ]
     return "\n".join(lines) + "\n"
+
+
+def _not_evaluated(of: Pruning) -> Iterator[str]:
+    """What was no part of the evaluation, as a section."""
+    if of.failed:
+        yield from (f"## What could not be evaluated, and is not here: {count(len(of.failed), 'file')}", "")
+        yield from (f"- `{name}`: {why}" for name, why in of.failed.items())
+        yield ""
 
 
 def files_words(written: Written) -> str:

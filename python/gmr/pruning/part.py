@@ -106,10 +106,12 @@ def recordings_of(database: Database) -> list[Recording]:
 
 
 def whole(database: Database) -> Part:
-    """All of a database; clips that others equal are no part of it."""
-    ranges: dict[str, tuple[Range, ...]] = dict.fromkeys(database.duplicates, ())
-    ranges.update({each.name: ((0, each.frames),) for each in recordings_of(database)})
-    return Part(database.rate, ranges)
+    """All of a dataset, the clips too that were left out of its database because others equal them."""
+    ranges: dict[str, tuple[Range, ...]] = {
+        each.name: ((0, each.frames),) for each in recordings_of(database)
+    }
+    twice = {name: ranges[first] for name, first in database.duplicates.items()}
+    return Part(database.rate, ranges | twice)
 
 
 def ranges_of(left: NDArray[np.bool_], least_gap: int = 1) -> tuple[Range, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from gmr.evaluation.elsewhere import Runs
@@ -39,6 +39,7 @@ class Pruning:
         importance: one row a clip; see :func:`gmr.pruning.importance_table`.
         curve: quality for size.
         chosen: the point of the curve that the goal picks.
+        failed: files that could not be evaluated, and why.
     """
 
     dataset: str
@@ -49,6 +50,7 @@ class Pruning:
     importance: Table
     curve: Curve
     chosen: Point
+    failed: Mapping[str, str]
 
 
 def prune(
@@ -93,7 +95,17 @@ def prune(
     aim = 0.0 if isinstance(share, str) else share
     curve = curve_of(asked, outcomes, again, tell, aim, until)
     chosen = curve.lossless if isinstance(share, str) else curve.reached(share)
-    return Pruning(evaluation.dataset, share, simulation, outcomes, left, importance, curve, chosen)
+    return Pruning(
+        dataset=evaluation.dataset,
+        goal=share,
+        simulation=simulation,
+        outcomes=outcomes,
+        lossless=left,
+        importance=importance,
+        curve=curve,
+        chosen=chosen,
+        failed=evaluation.failed,
+    )
 
 
 def goal_of(goal: float | str) -> float | str:

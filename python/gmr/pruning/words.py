@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from gmr.evaluation.words import count, duration, listing, number, percent
 from gmr.pruning.curve import Point
 from gmr.pruning.outcomes import Score
-from gmr.pruning.part import recordings_of
 from gmr.pruning.prune import Pruning
 
 if TYPE_CHECKING:
@@ -30,11 +29,7 @@ def headline(of: Pruning, written: Written | None = None) -> str:
         of: the pruning.
         written: the files, where they were: then the cost is what an evaluation of the new folder shows.
     """
-    what = f"{percent(_gone(of, written or of.chosen))} of the seconds"
-    if twice := len(of.simulation.database.duplicates):
-        are = "is" if twice == 1 else "are"
-        what = f"{count(twice, 'clip')} that {are} there twice and {what} of all others"
-    can_go = f"{what} can go"
+    can_go = f"{percent(_gone(of, written or of.chosen))} of the seconds can go"
     if not of.chosen.lossless or not (written is None or written.identical):
         return f"{can_go}; {_cost(of, of.chosen) if written is None else f'the new folder {_does(written)}'}."
     free = f"{can_go}, and every trial stays the same, bit by bit."
@@ -75,26 +70,31 @@ def _what_counts(of: Pruning) -> Iterator[str]:
 
 def _lossless(of: Pruning) -> str:
     whole, left = of.curve.points[0].part, of.lossless
-    clips = recordings_of(of.simulation.database)
-    kept = [each.name for each in clips if left.ranges[each.name]]
+    kept = [name for name in whole.ranges if left.ranges[name]]
     cut = [name for name in kept if left.ranges[name] != whole.ranges[name]]
-    if not cut and len(kept) == len(clips):
+    clips = len(whole.ranges)
+    if not cut and len(kept) == clips:
         return f"No half second of the {duration(whole.seconds)} can go without a change to a trial."
     return (
         f"No trial needs {duration(whole.seconds - left.seconds)} of {duration(whole.seconds)} "
-        f"({percent(1 - left.seconds / whole.seconds)}): {count(len(clips) - len(kept), 'clip')} of "
-        f"{len(clips)} as a whole, and parts of {len(cut) or 'none'}. Without them "
+        f"({percent(1 - left.seconds / whole.seconds)}): {count(clips - len(kept), 'clip')} of "
+        f"{clips} as a whole, and parts of {len(cut) or 'none'}. Without them "
         f"{count(of.outcomes.score.runs, 'trial')} were run again, and all are the same in every bit."
     )
 
 
 def twice_sentence(of: Pruning) -> Iterator[str]:
-    """Which clips go because another is the same motion, where there are such."""
+    """Which of them go because another is the same motion, where there are such."""
     twice = of.simulation.database.duplicates
     if twice:
         name, first = next(iter(twice.items()))
-        goes, them = ("goes", "it") if len(twice) == 1 else (f"and {len(twice) - 1} more go", "them")
-        yield f"'{name}', the same motion as '{first}', {goes}, too: the evaluation had left {them} out."
+        if len(twice) == 1:
+            yield f"'{name}' is the same motion as '{first}' and went first."
+        else:
+            yield (
+                f"{len(twice)} clips are the same motion as others ('{name}' as '{first}' and "
+                f"{len(twice) - 1} more) and went first."
+            )
 
 
 def curve_sentence(of: Pruning) -> str:
@@ -134,7 +134,8 @@ def importance_sentence(of: Pruning) -> str:
         first = "No clip is missed when it is left out alone."
     else:
         named = listing([f"{row['clip']} ({_change(row)})" for row in mattering])
-        first = f"Left out alone, the clips that are missed most are {named}."
+        most = "clip that is missed most is" if len(mattering) == 1 else "clips that are missed most are"
+        first = f"Left out alone, the {most} {named}."
     return " ".join([first, *_others(len(harmless), len(helped), len(rows))])
 
 

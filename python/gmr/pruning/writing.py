@@ -20,6 +20,7 @@ import numpy as np
 
 from gmr.errors import DatasetError, FormatWarning, GmrError
 from gmr.evaluation.elsewhere import Runs
+from gmr.evaluation.reading import printable
 from gmr.formats import read_folder, write
 from gmr.formats.folder import Takes
 from gmr.formats.registry import FORMATS, suffixes
@@ -92,7 +93,7 @@ def write_pruned(
     """
     place, tell = Path(folder), progress or (lambda phase, done, of: None)
     check_new_folder(place)
-    motions = _motions(of, Path(source))
+    motions, paths = _motions(of, Path(source))
     place.parent.mkdir(parents=True, exist_ok=True)
     beside = place.with_name(f".{place.name}.{secrets.token_hex(4)}")
     options: dict[str, Any] = {
@@ -102,7 +103,7 @@ def write_pruned(
         "unit": unit,
     }
     try:
-        written = _written_and_checked(of, Path(source), motions, beside, options, tell)
+        written = _written_and_checked(of, Path(source), motions, paths, beside, options, tell)
         told = replace(written, folder=place)
         of.importance.to_csv(beside / "importance.csv")
         of.curve.table.to_csv(beside / "curve.csv")
@@ -122,15 +123,14 @@ def check_new_folder(folder: Path) -> None:
         raise DatasetError(f"{folder} is there and not empty; give a new folder for the smaller dataset")
 
 
-def _motions(of: Pruning, source: Path) -> dict[str, Motion]:
-    """The recordings as they are read."""
+def _motions(of: Pruning, source: Path) -> tuple[dict[str, Motion], dict[str, str]]:
+    """The recordings as they are read, and where each is below its folder, as the file system has it."""
     takes = _read(source)
-    found = {}
-    for recording in recordings_of(of.simulation.database):
-        if recording.name not in takes:
-            raise DatasetError(f"{source} no longer holds {recording.name}; evaluate it again")
-        found[recording.name] = takes[recording.name]
-    return found
+    paths = {printable(path): path for path in takes}
+    names = [recording.name for recording in recordings_of(of.simulation.database)]
+    if gone := [name for name in names if name not in paths]:
+        raise DatasetError(f"{source} no longer holds {gone[0]}; evaluate it again")
+    return {name: takes[paths[name]] for name in names}, paths
 
 
 def _read(folder: Path) -> Takes:
@@ -144,6 +144,7 @@ def _written_and_checked(
     of: Pruning,
     source: Path,
     motions: Mapping[str, Motion],
+    paths: Mapping[str, str],
     beside: Path,
     options: Mapping[str, Any],
     tell: Progress,
@@ -151,8 +152,8 @@ def _written_and_checked(
     """Write, read and run again; where nothing may change and something does, cut less and begin again."""
     asked, part = Runs.of(of.simulation), of.chosen.part
     while True:
-        pieces = pieces_of(asked.database, motions, part)
-        _write(pieces, source, motions, beside, tell)
+        pieces = pieces_of(asked.database, motions, paths, part)
+        _write(pieces, source, motions, paths, beside, tell)
         tell("checking what was written", 0, 1)
         takes = _read(beside)
         kept = _built(takes, options, asked.database)
@@ -214,15 +215,21 @@ def _cut_less(of: Pruning, part: Part, logs: list[TrialLog], same: Any) -> Part:
 
 
 def _write(
-    pieces: list[Piece], source: Path, motions: Mapping[str, Motion], folder: Path, tell: Progress
+    pieces: list[Piece],
+    source: Path,
+    motions: Mapping[str, Motion],
+    paths: Mapping[str, str],
+    folder: Path,
+    tell: Progress,
 ) -> None:
     for number, piece in enumerate(pieces):
         tell("writing the smaller dataset", number, len(pieces))
         place = folder / piece.file
         place.parent.mkdir(parents=True, exist_ok=True)
         if piece.frames is None:
-            shutil.copyfile(source / piece.source, place)
-            _copy_what_serves((source / piece.source).parent, place.parent)
+            whole = source / paths[piece.source]
+            shutil.copyfile(whole, place)
+            _copy_what_serves(whole.parent, place.parent)
         else:
             write(piece.of(motions[piece.source]), place)
     tell("writing the smaller dataset", len(pieces), len(pieces))
