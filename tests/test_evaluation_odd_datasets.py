@@ -132,7 +132,8 @@ LEFT_OUT = {
         far_away(WALK),
         "it holds a number as large as 1e+30, where no body can be",
     ),
-    "no frames": (re.sub(r"Frames: .*\n(.*\n)[^$]*", r"Frames: 0\n\1", WALK), "it is a pose, not a movement"),
+    "no frames": (re.sub(r"Frames: .*\n(.*\n)[^$]*", r"Frames: 0\n\1", WALK), "it holds no frames; export it"),
+    "one frame": (walker_bvh(Arc(0.0, 1.0)), "it is a pose, not a movement: a clip has at least 2 frames"),
 }
 
 REFUSED = {

@@ -166,6 +166,8 @@ def _usable(motions: Mapping[str, Motion]) -> tuple[dict[str, Motion], dict[str,
 def _unusable(motion: Motion) -> str | None:
     if motion.frame_time <= 0:
         return "its frame time is 0; say how long a frame lasts"
+    if motion.frame_count == 0:
+        return "it holds no frames; export it again, with the movement"
     if motion.frame_count < 2:
         return "it is a pose, not a movement: a clip has at least 2 frames"
     if not all(np.isfinite(values).all() for values in motion.source.numbers):
