@@ -29,17 +29,22 @@ def changed(text: str, change: Callable[[np.ndarray[tuple[int, int], np.dtype[np
     return head + times + "\n".join(" ".join(f"{value:.6f}" for value in row) for row in numbers) + "\n"
 
 
-def z_up(text: str) -> str:
-    """The world turned by 90 degrees about x."""
+def turned(text: str, axis: str, degrees: float) -> str:
+    """The world turned about x or z."""
+    sin, cos = np.sin(np.radians(degrees)), np.cos(np.radians(degrees))
+    one, other = {"X": (1, 2), "Z": (0, 1)}[axis]
 
     def turn(rows: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> None:
-        rows[:, [1, 2]] = np.stack([-rows[:, 2], rows[:, 1]], axis=1)
-        rows[:, [3, 4]] = np.stack([np.full(len(rows), 90.0), rows[:, 3]], axis=1)
+        here, there = rows[:, one].copy(), rows[:, other].copy()
+        rows[:, one], rows[:, other] = cos * here - sin * there, sin * here + cos * there
+        rows[:, [3, 4]] = np.stack([np.full(len(rows), degrees), rows[:, 3]], axis=1)
 
-    text = text.replace(
-        "Zposition Yrotation Xrotation Zrotation", "Zposition Xrotation Yrotation Zrotation", 1
-    )
-    return changed(text, turn)
+    channels = {"X": "Xrotation Yrotation Zrotation", "Z": "Zrotation Yrotation Xrotation"}[axis]
+    return changed(text.replace("Yrotation Xrotation Zrotation", channels, 1), turn)
+
+
+def z_up(text: str) -> str:
+    return turned(text, "X", 90.0)
 
 
 def in_metres(text: str) -> str:
@@ -103,6 +108,14 @@ TAKEN = {
         {"walk": WALK, "turn": TURN, "odd": z_up(WALK)},
         "In 1 of 3 clips ('odd.bvh') the hips do not lie above the feet along +Y as in the others",
     ),
+    "one file with y down": (
+        {"walk": WALK, "turn": TURN, "again": walker_bvh(Arc(4.0, 1.1)), "odd": turned(WALK, "X", 180.0)},
+        "In 1 of 4 clips ('odd.bvh') the hips do not lie above the feet along +Y as in the others",
+    ),
+    "all with x up": (
+        {"walk": turned(WALK, "Z", -90.0), "turn": turned(TURN, "Z", -90.0)},
+        "The files have +X up; they were turned to +Y.",
+    ),
     "metres and centimetres": (
         {"walk": WALK, "turn": in_metres(TURN)},
         "(for 'turn.bvh'); if it is another, say --unit (unit=... in Python).",
@@ -127,17 +140,31 @@ LEFT_OUT = {
         "'nan' stands for no number",
     ),
     "another skeleton": (WALK.replace("JOINT Head", "JOINT Kopf"), "another skeleton than that of the clips"),
+    "a body on its side": (
+        turned(WALK, "Z", 90.0),
+        "along -X and not, as in the others, along +Y: the file has another axis up, or the body lies and "
+        "shows no facing; give it a folder of its own",
+    ),
     "no unit fits": (in_metres(in_metres(in_metres(WALK))), "say how many metres a file unit is: --unit"),
     "farther than a body can be": (
         far_away(WALK),
         "it holds a number as large as 1e+30, where no body can be",
     ),
-    "no frames": (re.sub(r"Frames: .*\n(.*\n)[^$]*", r"Frames: 0\n\1", WALK), "it is a pose, not a movement"),
+    "no frames": (
+        re.sub(r"Frames: .*\n(.*\n)[^$]*", r"Frames: 0\n\1", WALK),
+        "it holds no frames; export it",
+    ),
+    "one frame": (walker_bvh(Arc(0.0, 1.0)), "it is a pose, not a movement: a clip has at least 2 frames"),
 }
 
 REFUSED = {
     "an empty folder": ({}, "holds no motion files (.bvh"),
     "only a broken file": ({"odd": "HIERARCHY\n"}, "the only motion file of"),
+    "files of two axes": (
+        {"one": z_up(WALK), "other": turned(TURN, "X", -90.0)},
+        "the clips do not have one axis up: +Z is up in 'one.bvh'; -Z in 'other.bvh'. Give the files of each "
+        "axis a folder of their own",
+    ),
     "only short clips": ({"step": walker_bvh(Arc(0.5, 1.0))}, "Give longer takes"),
 }
 
@@ -213,6 +240,15 @@ def test_what_cannot_be_evaluated_is_one_sentence_whatever_is_asked(
     assert says in said.err
     assert said.err.count("\n") == 1
     assert said.out == ""
+
+
+def test_a_body_on_its_side_is_left_out_with_mirrored_copies_too(tmp_path: Path, capsys: Captured) -> None:
+    files = {"walk": WALK, "turn": TURN, "odd": turned(WALK, "Z", 90.0)}
+    folder = folder_of(tmp_path / "takes", files)
+    assert finished(command, ["evaluate", str(folder), *SMALL, "--no-report", "--mirror"]) == 1
+    said = capsys.readouterr()
+    assert "1 file could not be used and was left out: odd.bvh." in told(said.out)
+    assert "left out odd.bvh: its hips lie above its feet along -X" in said.err
 
 
 def test_a_unit_that_makes_dwarfs_of_some_clips_is_told(tmp_path: Path, capsys: Captured) -> None:

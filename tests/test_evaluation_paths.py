@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -189,11 +190,16 @@ def test_speeds_in_the_points_are_gone_at_there(tmp_path: Path) -> None:
         ("a,b\n0,0\n1,1\n", r"bad\.csv:1: the first line is 'a,b'; begin with a header: 'x,z', "),
         ("x,z\n0,0\n", r"bad\.csv: 1 point; a path has 2"),
         ("", r"bad\.csv: 0 points"),
-        ("x,z\n0,0\n0,1\n0,0\n", r"the path turns in no time; at most 720 degrees/s can be asked for"),
-        ("x,z,t\n0,0,0\n0,9,0.01\n", r"bad, line 2 to bad, line 3 the path takes 900 m/s"),
-        ("x,z,t\n0,0,0\n0,2,1\n0,0,2\n0,0,3\n", r"bad, line 2 to bad, line 3.*stand there"),
-        ("x,z,speed\n0,0,0\n0,1,0\n", r"bad, line 3: the speed is 0 from the point before"),
-        ("x,z\n0,0\n0,0\n0,1\n", r"bad, line 3: the same point again; standing is told by time"),
+        (
+            "x,z\n0,0\n0,1\n0,0\n",
+            r"bad\.csv: from line 2 to line 3 the path turns in no time; at most 720 degrees/s",
+        ),
+        ("x,z,t\n0,0,0\n0,9,0.01\n", r"bad\.csv: from line 2 to line 3 the path takes 900 m/s"),
+        ("x,z,t\n0,0,0\n0,2,1\n0,0,2\n0,0,3\n", r"bad\.csv: from line 2 to line 3.*stand there"),
+        ("x,z,speed\n0,0,0\n0,1,0\n", r"bad\.csv: from line 2 to line 3 the speed is 0; standing is"),
+        ("x,z\n0,0\n0,0\n0,1\n", r"bad\.csv: line 3 has the same point as line 2; standing is told by time"),
+        ("x,z\n0,0\n0,0.001\n", r"bad\.csv: the path is 0\.001 m long; give 0\.1 m at least"),
+        ("x,z,speed\n0,0,1\n0.03,0,1\n0,0,1\n", r"bad\.csv: the path is 0\.06 m long.*, or, to stand, "),
     ],
 )
 def test_a_file_that_is_no_path_is_refused_by_line_and_value(tmp_path: Path, text: str, says: str) -> None:
@@ -203,11 +209,34 @@ def test_a_file_that_is_no_path_is_refused_by_line_and_value(tmp_path: Path, tex
 
 
 def test_files_that_cannot_be_read_say_so(tmp_path: Path) -> None:
-    with pytest.raises(gmr.FormatError, match="cannot be read"):
+    with pytest.raises(gmr.FormatError, match=r"none\.csv: the file cannot be read"):
         PathPoints.read(tmp_path / "none.csv")
     (tmp_path / "bytes.csv").write_bytes(b"x,z\n\xff\xfe,0\n")
-    with pytest.raises(gmr.FormatError, match="UTF-8"):
+    with pytest.raises(
+        gmr.FormatError, match=r"bytes\.csv: the file holds no text in UTF-8; save the points "
+    ):
         PathPoints.read(tmp_path / "bytes.csv")
+
+
+def test_points_in_memory_are_refused_by_the_name_of_the_path_and_their_number() -> None:
+    back = PathPoints.of("back", [(0, 0), (0, 5), (0, -5)], speeds=[1.0])
+    with pytest.raises(ValueError, match=r"^back: from point 1 to point 2 the path turns in no time"):
+        back.trials()
+    with pytest.raises(ValueError, match=r"^short: the path is 0\.002 m long; give 0\.1 m at least"):
+        PathPoints.of("short", [(0, 0), (0, 0.002)]).trials()
+
+
+def test_who_gives_times_may_stand_however_small_the_way() -> None:
+    for points in ([(0, 0), (0, 0)], [(0, 0), (0, 0.001)]):
+        (trial,) = PathPoints.of("stand", points, seconds=[0, 10]).trials()
+        assert (trial.speed, trial.seconds - trial.recorded_from) == pytest.approx((0.0, 10.0))
+
+
+def test_the_note_counts_points_and_segments_in_the_right_number() -> None:
+    (one,) = PathPoints.of("stand", [(0, 0), (0, 0)], seconds=[0, 9]).notes
+    (many,) = PathPoints.of("way", [(0, 0), (0, 4), (4, 4)], speeds=[1.0]).notes
+    assert one.startswith("Scenario 'stand': 2 points became 1 segment of constant speed and turn rate, ")
+    assert re.match(r"Scenario 'way': 3 points became \d segments of constant speed", many)
 
 
 @dataclass(frozen=True)

@@ -202,6 +202,32 @@ def test_what_is_no_better_on_the_held_out_half_is_not_chosen(tuned: Tuning) -> 
     assert list(sentences(same))[2].endswith(": nothing changes.")
 
 
+def test_weights_with_which_fewer_of_the_held_out_trials_hold_are_not_recommended(tuned: Tuning) -> None:
+    held_out = tuned.trials["set"] == "held out"
+    first, second = np.flatnonzero(held_out)[:2]
+
+    def holding(before: list[int], after: list[int]) -> Tuning:
+        held = {"held": np.isin(np.arange(9), before), "held_tuned": np.isin(np.arange(9), after)}
+        return replace(tuned, gain=Interval(10.0, 9.0, 11.0), trials=Table({**dict(tuned.trials), **held}))
+
+    lost = holding([first], [])
+    assert lost.beyond_chance
+    assert lost.loses_trials
+    assert not lost.improves
+    assert lost.chosen is lost.schema
+    assert headline(lost) == (
+        "The weights of the features stay as they are: others lower offset and jumping by 10 m on trials "
+        f"that were not tuned on, but of the {held_out.sum()} none does what it is asked, where 1 did."
+    )
+    assert "What the search found, and what loses trials" in list(sentences(lost))[-1]
+    fewer = holding([first, second], [second])
+    assert not fewer.improves
+    assert headline(fewer).endswith(f"of the {held_out.sum()} only 1 does what it is asked, where 2 did.")
+    # As many hold as before, others among them; and what the search saw does not count.
+    assert holding([first], [second]).improves
+    assert holding([int(np.flatnonzero(~held_out)[0])], []).improves
+
+
 def test_words_tell_the_trials_that_hold_the_options_and_what_lies_at_the_bound(
     evaluated: Evaluation, tuned: Tuning
 ) -> None:

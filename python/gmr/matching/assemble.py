@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from gmr import _core
 from gmr.errors import DatasetError, GmrError, SkeletonError
 from gmr.matching.mirroring import Mirror, find_mirror
+from gmr.matching.oddities import no_facing
 from gmr.matching.posed import Posed, posed, translated_joints
 from gmr.matching.prepare import in_metres_upright
 from gmr.matching.schema import Schema
@@ -136,12 +137,22 @@ def _pairs(seen: Survey, pairs: Mapping[str, str] | None) -> NDArray[np.int32]:
 
 
 def _mirror(seen: Survey, pair: NDArray[np.int32], translated: NDArray[np.int32]) -> Mirror:
-    """How the dataset's clips are mirrored."""
+    """How the dataset's clips are mirrored; those that show no facing tell nothing of it.
+
+    Raises:
+        DatasetError: none shows one.
+    """
     names = list(seen.samples)[:: max(1, len(seen.samples) // _MIRROR_SAMPLES)]
-    motions = (in_metres_upright(seen.samples[name], seen.units[name], seen.up) for name in names)
-    return find_mirror(
-        seen.skeleton, pair, [posed(seen, motion, translated) for motion in motions], translated
-    )
+    clips, why = [], ""
+    for name in names:
+        try:
+            motion = in_metres_upright(seen.samples[name], seen.units[name], seen.up)
+            clips.append(_posed(seen, name, motion, translated))
+        except ValueError as error:
+            why = f"'{name}': {error}"
+    if not clips:
+        raise DatasetError(f"the clips cannot be mirrored ({why})")
+    return find_mirror(seen.skeleton, pair, clips, translated)
 
 
 def _take(
@@ -150,15 +161,31 @@ def _take(
     """One clip of a survey, prepared.
 
     Raises:
-        DatasetError: its hips jump.
+        DatasetError: its hips jump, or it stands along another axis than the others and shows no facing.
         ValueError: it shows no facing.
     """
     motion, skipped = seen.motions[name], seen.skipped.get(name, 0)
     prepared = in_metres_upright(motion, seen.units[name], seen.up).resample(rate)
-    clip = posed(seen, prepared, translated)
+    clip = _posed(seen, name, prepared, translated)
     _check_speed(clip.positions[:, seen.joints["hips"]], rate)
     bits = None if tags is None else _bits(np.asarray(tags, np.uint32), motion, prepared, skipped)
     return Take(name, clip, bits, skipped * motion.frame_time)
+
+
+def _posed(seen: Survey, name: str, motion: Motion, translated: NDArray[np.int32]) -> Posed:
+    """A clip of a survey, or some frames of it, as arrays.
+
+    Raises:
+        DatasetError: it shows no facing, for it stands along another axis than the others.
+        ValueError: it shows no facing.
+    """
+    try:
+        return posed(seen, motion, translated)
+    except ValueError as error:
+        sample = np.asarray(seen.samples[name].positions(dtype=np.float64))
+        if (why := no_facing(sample, seen.joints.roles, seen.up)) is not None:
+            raise DatasetError(why) from error
+        raise
 
 
 def _check_speed(hips: NDArray[np.float32], rate: float) -> None:

@@ -13,7 +13,7 @@ from gmr.body.measures import Poses, turned_upright, up_axis
 from gmr.errors import DatasetError
 from gmr.forest import home
 from gmr.listing import quoted
-from gmr.matching.oddities import oddities
+from gmr.matching.oddities import axes_apart, oddities
 from gmr.matching.prepare import in_metres_upright
 from gmr.matching.root import RootJoint, find_root_joint, joints_left_behind
 from gmr.matching.unit_guesses import middle, units_of
@@ -99,7 +99,7 @@ def survey(
     poses = {name: np.asarray(motion.positions(dtype=np.float64)) for name, motion in sampled.items()}
     skeleton = next(iter(usable.values())).skeleton
     pooled = _pooled(skeleton, poses.values())
-    joints = find_joints(skeleton, pooled, names)
+    joints = _joints(skeleton, pooled, poses, names)
     up = up_axis(pooled, joints.roles)
     units, unit_notes = units_of(usable, poses, joints, unit, excluded)
     usable, sampled = ({name: of[name] for name in units} for of in (usable, sampled))
@@ -156,6 +156,8 @@ def _usable(motions: Mapping[str, Motion]) -> tuple[dict[str, Motion], dict[str,
 def _unusable(motion: Motion) -> str | None:
     if motion.frame_time <= 0:
         return "its frame time is 0; say how long a frame lasts"
+    if motion.frame_count == 0:
+        return "it holds no frames; export it again, with the movement"
     if motion.frame_count < 2:
         return "it is a pose, not a movement: a clip has at least 2 frames"
     if not all(np.isfinite(values).all() for values in motion.source.numbers):
@@ -267,6 +269,21 @@ def _pooled(skeleton: Skeleton, poses: Iterable[Poses]) -> Poses:
         bones = np.linalg.norm(clip[:, inner] - clip[:, skeleton.parents[inner]], axis=2).mean(axis=0)
         scaled.append(clip / max(bones.mean(), 1e-12))
     return np.concatenate(scaled)
+
+
+def _joints(
+    skeleton: Skeleton, pooled: Poses, poses: Mapping[str, Poses], names: Mapping[str, str | int] | None
+) -> Joints:
+    """The joints of the body, from the poses of all clips together.
+
+    Raises:
+        DatasetError: they are not found; where the clips stand along different axes, because of that.
+    """
+    try:
+        return find_joints(skeleton, pooled, names)
+    except DatasetError as error:
+        apart = axes_apart(skeleton, poses, names)
+        raise (DatasetError(apart) if apart else error) from error
 
 
 def _floor(upright: Iterable[Poses]) -> float:

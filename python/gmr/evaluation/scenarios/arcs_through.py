@@ -92,15 +92,11 @@ def timed_by_speed(points: Points, speeds: Points, places: Sequence[str]) -> Poi
         if length > 0:
             length = sum(arc.length for arc in biarc(one, other))
         if mean <= 0 or length <= 0:
-            raise ValueError(
-                f"{places[place + 1]}: "
-                + (
-                    "the speed is 0 from the point before to this one"
-                    if length > 0
-                    else "the same point again"
-                )
-                + "; standing is told by time: give the points as x,z,t"
-            )
+            before, after = places[place], places[place + 1]
+            what = f"from {before} to {after} the speed is 0"
+            if length <= 0:
+                what = f"{after} has the same point as {before}"
+            raise ValueError(f"{what}; standing is told by time: give the points as x,z,t")
         seconds.append(seconds[-1] + length / float(mean))
     return np.array(seconds)
 

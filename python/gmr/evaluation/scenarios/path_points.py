@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Self
+from typing import Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gmr.errors import FormatError
 from gmr.evaluation.scenario import RUN_UP, Segment, Trial
 from gmr.evaluation.scenarios.arcs_through import ArcsThrough, arcs_through, timed_by_speed
 from gmr.evaluation.scenarios.points_file import read_points
+from gmr.evaluation.words import count
 
 __all__ = ["PathPoints"]
+
+SHORTEST_WAY: Final = 0.1
+"""Metres: who is asked to go less than that, without being told when, stands."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +40,7 @@ class PathPoints:
         speeds: at which it is gone where the points say nothing of time, a trial each, metres per second.
         tolerance: metres between a point and the planned place at its time, at most.
         lines: (N,) what errors call the points: the lines of the file.
+        file: where the points were read; None where they were not.
     """
 
     name: str
@@ -44,6 +50,7 @@ class PathPoints:
     speeds: tuple[float, ...] = (1.0, 2.0, 3.0)
     tolerance: float = 0.05
     lines: tuple[int, ...] | None = None
+    file: str | None = None
 
     @classmethod
     def of(
@@ -84,7 +91,14 @@ class PathPoints:
         """
         found = read_points(path)
         return cls(
-            Path(path).stem, found.points, found.seconds, found.speeds, tuple(speeds), tolerance, found.lines
+            name=Path(path).stem,
+            points=found.points,
+            seconds=found.seconds,
+            point_speeds=found.speeds,
+            speeds=tuple(speeds),
+            tolerance=tolerance,
+            lines=found.lines,
+            file=os.fspath(path),
         )
 
     def trials(self) -> tuple[Trial, ...]:
@@ -102,8 +116,9 @@ class PathPoints:
         planned = tuple(self.planned.values())
         away = max(each.deviation for each in planned)
         return (
-            f"Scenario '{self.name}': {len(self.points):,} points became {len(planned[0].segments):,} "
-            f"segments of constant speed and turn rate, at most {away:.3f} m from the points at their times "
+            f"Scenario '{self.name}': {len(self.points):,} points became "
+            f"{count(len(planned[0].segments), 'segment')} of constant speed and turn rate, at most "
+            f"{away:.3f} m from the points at their times "
             f"({self.tolerance:g} m are allowed).",
         )
 
@@ -111,22 +126,30 @@ class PathPoints:
     def planned(self) -> dict[str, ArcsThrough]:
         """The arcs of every trial, by the trial's path."""
         self._check()
-        lines = self.lines or tuple(range(1, len(self.points) + 1))
-        what = "line" if self.lines else "point"
-        places = [f"{self.name}, {what} {line}" for line in lines]
+        try:
+            return dict(self._arcs())
+        except ValueError as error:
+            raise self._refused(str(error)) from error
+
+    def _arcs(self) -> Iterator[tuple[str, ArcsThrough]]:
+        lines = self.lines or range(1, len(self.points) + 1)
+        places = [f"{'line' if self.lines else 'point'} {line}" for line in lines]
+        for label, seconds in self._times(places):
+            yield label, arcs_through(self.points, seconds, self.tolerance, places)
+
+    def _times(self, places: Sequence[str]) -> Iterator[tuple[str, NDArray[np.float64]]]:
+        """When each point is passed in each of the trials."""
         if self.seconds is not None:
-            times = {"as timed": self.seconds}
+            yield "as timed", self.seconds
         elif self.point_speeds is not None:
-            times = {"as timed": timed_by_speed(self.points, self.point_speeds, places)}
+            yield "as timed", timed_by_speed(self.points, self.point_speeds, places)
         else:
-            times = {
-                f"{speed:g} m/s": timed_by_speed(self.points, np.full(len(self.points), speed), places)
-                for speed in self.speeds
-            }
-        return {
-            label: arcs_through(self.points, seconds, self.tolerance, places)
-            for label, seconds in times.items()
-        }
+            for speed in self.speeds:
+                paces = np.full(len(self.points), speed)
+                yield f"{speed:g} m/s", timed_by_speed(self.points, paces, places)
+
+    def _refused(self, why: str) -> ValueError:
+        return FormatError(why, file=self.file) if self.file else ValueError(f"{self.name}: {why}")
 
     def _check(self) -> None:
         points = self.points
@@ -144,3 +167,13 @@ class PathPoints:
             raise ValueError(f"{self.name}: the seconds must rise from point to point")
         if self.seconds is None and not (np.array(self.speeds) > 0).all():
             raise ValueError(f"{self.name}: a speed must be above 0 m/s")
+        self._check_length()
+
+    def _check_length(self) -> None:
+        """Refuses a way that nobody would see; who says when may stand, which is no way at all."""
+        steps = np.hypot(*np.diff(self.points, axis=0).T)
+        if self.seconds is None and 0 < steps.sum() < SHORTEST_WAY:
+            raise self._refused(
+                f"the path is {steps.sum():.3g} m long; give {SHORTEST_WAY:g} m at least, in metres, or, to "
+                "stand, the same point at two times (x,z,t)"
+            )

@@ -72,12 +72,16 @@ def _lines(file: str) -> Iterator[tuple[int, list[str]]]:
     """Line number and cells of every line that says something."""
     try:
         if Path(file).stat().st_size > MOST_BYTES:
-            raise FormatError(f"longer than {MOST_BYTES:,} bytes; is it a list of points?", file=file)
+            raise FormatError(
+                f"the file is longer than {MOST_BYTES:,} bytes; is it a list of points?", file=file
+            )
         text = Path(file).read_bytes().decode("utf-8-sig")
     except OSError as error:
-        raise FormatError(f"cannot be read: {error.strerror}", file=file) from error
+        raise FormatError(f"the file cannot be read: {error.strerror}", file=file) from error
     except UnicodeDecodeError as error:
-        raise FormatError("is no text in UTF-8; save it as such", file=file) from error
+        raise FormatError(
+            "the file holds no text in UTF-8; save the points as a CSV file in UTF-8", file=file
+        ) from error
     for line, content in enumerate(text.splitlines(), start=1):
         if content.strip() and not content.lstrip().startswith("#"):
             yield line, [cell.strip() for cell in content.split(",")]

@@ -78,9 +78,15 @@ class Tuning:
         return WORTHWHILE * self.mean(HELD_OUT, "objective")
 
     @property
+    def loses_trials(self) -> bool:
+        """Whether fewer of the cells that were held out hold with the tuned weights than did before."""
+        before, after = self.holding(HELD_OUT)
+        return after < before
+
+    @property
     def improves(self) -> bool:
-        """Whether they do better by more than chance, and by so much that it is worth it."""
-        return self.beyond_chance and bool(self.gain.mean >= self.worthwhile)
+        """Whether they do better by more than chance, by so much that it is worth it, and lose no trial."""
+        return self.beyond_chance and bool(self.gain.mean >= self.worthwhile) and not self.loses_trials
 
     @property
     def chosen(self) -> Schema:
@@ -96,6 +102,11 @@ class Tuning:
             for name in self.search.column_names
             if name not in ("objective", "best")
         }
+
+    def holding(self, which: str) -> tuple[int, int]:
+        """How many cells of one set do what they are asked with the weights as they were, and tuned."""
+        chosen = self.trials["set"] == which
+        return int(self.trials["held"][chosen].sum()), int(self.trials["held_tuned"][chosen].sum())
 
     def mean(self, which: str, column: str) -> float:
         """The mean of a column of :attr:`trials` over the cells of one set."""

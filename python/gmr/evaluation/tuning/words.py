@@ -24,6 +24,15 @@ def headline(tuning: Tuning) -> str:
         return (
             f"Weigh the features anew: {_weights(tuning)}. Trials that were not tuned on do better with it."
         )
+    if tuning.beyond_chance and tuning.loses_trials:
+        before, after = tuning.holding(HELD_OUT)
+        do = "none does" if after == 0 else f"only {after} {'does' if after == 1 else 'do'}"
+        return (
+            "The weights of the features stay as they are: others lower offset and jumping by "
+            f"{number(tuning.gain.mean)} m on trials that were not tuned on, but of the "
+            f"{int((tuning.trials['set'] == HELD_OUT).sum())} {do} what "
+            f"{'it is' if after <= 1 else 'they are'} asked, where {before} did."
+        )
     if tuning.beyond_chance:
         return (
             "The weights of the features stay as they are: no worthwhile gain. Others do better on trials "
@@ -54,8 +63,13 @@ def sentences(tuning: Tuning) -> Iterator[str]:
     if tuning.improves:
         yield from _options(tuning)
     else:
-        why = "what is not worth it" if tuning.beyond_chance else "what is not to be trusted"
-        yield f"What the search found, and {why}: {_weights(tuning)}."
+        yield f"What the search found, and {_why_not(tuning)}: {_weights(tuning)}."
+
+
+def _why_not(tuning: Tuning) -> str:
+    if not tuning.beyond_chance:
+        return "what is not to be trusted"
+    return "what loses trials" if tuning.loses_trials else "what is not worth it"
 
 
 def _change(gain: Interval) -> str:
@@ -86,7 +100,7 @@ def _held(tuning: Tuning) -> str:
     parts = []
     for which, what in ((TRAINING, "tuned on"), (HELD_OUT, "held out")):
         chosen = tuning.trials["set"] == which
-        before, after = (int(tuning.trials[name][chosen].sum()) for name in ("held", "held_tuned"))
+        before, after = tuning.holding(which)
         hold = f"{after} {'holds' if after == 1 else 'hold'}" if after else "none holds"
         than = ", as before" if after == before else f" where {before or 'none'} did"
         parts.append(f"of the {count(int(chosen.sum()), 'trial')} {what} {hold}{than}")
