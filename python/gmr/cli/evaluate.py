@@ -23,7 +23,7 @@ from gmr.cli.cluster_options import check_workers, cluster_options
 from gmr.cli.common import INTERRUPTED, options_given, say
 from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.evaluation_results import as_object, in_words
-from gmr.cli.outcome import at_place, left_out, refuse_inside, trouble_with_files
+from gmr.cli.outcome import at_place, left_out, refuse_inside, refuse_one_place, trouble_with_files
 from gmr.cli.progress import Phases
 from gmr.cli.pruning import check_pruning, prune_folder, pruning_options
 from gmr.cli.scenarios import check_scenarios, scenario_options
@@ -162,6 +162,10 @@ def evaluate(
         raise click.UsageError("--complete-from completes one dataset; give one folder.")
     if len(folders) > 1 and tune:
         raise click.UsageError("--tune finds the weights of one dataset; give one folder.")
+    if completing is not None:
+        _check_apart(
+            completing.out, prune_out if prune is not None else None, tables, None if no_report else out
+        )
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):
         _check_places(None if no_report else out, tables, figures, phases)
@@ -226,6 +230,22 @@ def _evaluated(sources: Sequence[Path | Read], **settings: Any) -> Evaluation | 
     import gmr
 
     return gmr.evaluate(sources[0], **settings) if len(sources) == 1 else gmr.compare(sources, **settings)
+
+
+def _check_apart(completed: Path, pruned: Path | None, tables: Path | None, report: Path | None) -> None:
+    """Refuse places of which one result would overwrite the other."""
+    if pruned is not None:
+        refuse_one_place(("--complete-out", completed), ("--prune-out", pruned))
+    if tables is not None and tables.resolve() == completed.resolve():
+        raise click.UsageError(
+            f"--complete-out and --tables are both {tables}, and each writes a trials.csv and a clips.csv; "
+            "give them two folders."
+        )
+    if report is not None and report.resolve() == (completed / "after.html").resolve():
+        raise click.UsageError(
+            f"--out is {report}, where --complete-out writes the report of the completed dataset; give --out "
+            "another name."
+        )
 
 
 def _check_places(out: Path | None, tables: Path | None, figures: Path | None, phases: Phases) -> None:

@@ -12,7 +12,7 @@ from gmr.cli.progress import Phases
 from gmr.errors import GmrError
 from gmr.listing import listed
 
-__all__ = ["at_place", "left_out", "refuse_inside", "trouble_with_files"]
+__all__ = ["at_place", "left_out", "refuse_inside", "refuse_one_place", "trouble_with_files"]
 
 
 def left_out(failed: Mapping[str, str]) -> Iterator[str]:
@@ -31,6 +31,18 @@ def refuse_inside(out: Path, dataset: Path, option: str) -> None:
         raise click.UsageError(
             f"{out} lies in {dataset}, and would be read as a part of it the next time; "
             f"give {option} a place elsewhere."
+        )
+
+
+def refuse_one_place(one: tuple[str, Path], other: tuple[str, Path]) -> None:
+    """Refuses two options, each with its folder, of which one would write into what the other has written."""
+    (option, place), (second, elsewhere) = one, other
+    first, last = place.resolve(), elsewhere.resolve()
+    if first == last or first in last.parents or last in first.parents:
+        where = f"are both {place}" if first == last else f"are {place} and {elsewhere}, one in the other"
+        raise click.UsageError(
+            f"{option} and {second} {where}: what one writes the other would overwrite or add to; give them "
+            "folders apart from each other."
         )
 
 
