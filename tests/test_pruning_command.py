@@ -110,6 +110,8 @@ def test_what_could_not_be_done_is_told_to_machines_too(
         ("evaluate", "--prune", "30%", "--prune-out", "a/smaller"),
         ("evaluate", "--complete-from", "../archive"),
         ("complete",),
+        ("complete", "-o", "."),
+        ("complete", "--from", "../archive", "-o", "../takes"),
     ],
 )
 def test_clips_are_not_written_into_the_dataset_that_they_come_from(

@@ -124,7 +124,7 @@ def complete(
         "threads": threads,
         "schema": schema,
     }
-    refuse_inside(out, folder, "--out")
+    refuse_inside(out / "clips", folder, "--out")
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):
         with at_place(out):

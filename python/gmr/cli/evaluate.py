@@ -170,10 +170,10 @@ def evaluate(
     with phases, trouble_with_files(phases):
         _check_places(None if no_report else out, tables, figures, phases)
         if prune is not None:
-            refuse_inside(prune_out, folders[0], "--prune-out")
             check_pruning(prune_out, phases)
+            refuse_inside(prune_out, folders[0], "--prune-out")
         if completing is not None:
-            refuse_inside(completing.out, folders[0], "--complete-out")
+            refuse_inside(completing.out / "clips", folders[0], "--complete-out")
             check_completing(completing, phases)
         reading: dict[str, Any] = {"threads": threads, "names": names, "unit": unit}
         # Read once: a completion needs the clips themselves too.

@@ -26,10 +26,12 @@ def left_out(failed: Mapping[str, str]) -> Iterator[str]:
 
 
 def refuse_inside(out: Path, dataset: Path, option: str) -> None:
-    """Refuses a folder for clips that is part of the dataset which they come from."""
-    if dataset.resolve() in out.resolve().parents:
+    """Refuses a folder for clips that is part of the dataset which they come from, or is the dataset."""
+    place = out.resolve()
+    if dataset.resolve() in (place, *place.parents):
+        where = "is the dataset itself" if place == dataset.resolve() else f"lies in {dataset}"
         raise click.UsageError(
-            f"{out} lies in {dataset}, and would be read as a part of it the next time; "
+            f"{out} {where}, and would be read as a part of it the next time; "
             f"give {option} a place elsewhere."
         )
 
