@@ -401,3 +401,75 @@ def test_a_place_for_the_clips_that_cannot_be_is_found_before_the_work(
     completing = ["--complete-from", str(tmp_path), "--complete-out", str(place)]
     assert finished(command, ["evaluate", str(takes), *completing, "-q", "--no-report"]) == 1
     assert "Not a directory (while looking where to write)" in capsys.readouterr().err
+
+
+def test_clips_that_are_refused_are_told_like_files_that_are_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from gmr.cli.commands import gmr as command
+    from gmr.cli.common import finished
+
+    takes, archive = tmp_path / "takes", tmp_path / "archive"
+    takes.mkdir()
+    archive.mkdir()
+    gmr.write(walker(5, 1.2), takes / "straight.bvh")
+    names = {part: f"other {name}" if part == "head" else name for part, name in CMU.items()}
+    for name in ("a.bvh", "b.bvh"):
+        gmr.write(walker(5, 1.2, LEFT, names=names), archive / name)
+    (archive / "broken.bvh").write_text("HIERARCHY\n")
+    asked = ["--speeds", "1.2", "--turn-rates", "0,45", "-q", "--json"]
+    evaluate = [
+        "evaluate",
+        str(takes),
+        "--complete-from",
+        str(archive),
+        "--complete-out",
+        str(tmp_path / "a"),
+    ]
+    assert finished(command, [*evaluate, "--no-report", "--scenario", "constant", *asked]) == 1
+    said = capsys.readouterr()
+    told = json.loads(said.out)
+    assert told["not_done"]["--complete-from"].startswith("no clip of archive can be used: another skeleton")
+    assert set(told["completed"]["refused"]) == {"a.bvh", "b.bvh"}
+    lines = said.err.splitlines()
+    assert len(lines) == 3
+    assert "broken.bvh" in lines[0]
+    assert lines[1].startswith("gmr: left out a.bvh, b.bvh of archive: another skeleton than the dataset's")
+    assert lines[2].startswith(
+        "gmr: --complete-from came to nothing, all else is done: no clip of archive can"
+    )
+    complete = ["complete", str(takes), "--from", str(archive), "-o", str(tmp_path / "b")]
+    assert finished(command, [*complete, *asked]) == 1
+    again = capsys.readouterr().err.splitlines()
+    assert again == lines[:2]
+
+
+def test_nothing_is_said_to_be_undone_where_some_clips_can_be_used(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from gmr.cli.commands import gmr as command
+    from gmr.cli.common import finished
+
+    takes, archive = tmp_path / "takes", tmp_path / "archive"
+    takes.mkdir()
+    archive.mkdir()
+    gmr.write(walker(5, 1.2), takes / "straight.bvh")
+    gmr.write(walker(6, 1.2, LEFT), archive / "left.bvh")
+    names = {part: f"other {name}" if part == "head" else name for part, name in CMU.items()}
+    gmr.write(walker(5, 1.2, LEFT, names=names), archive / "odd.bvh")
+    asked = [
+        "--speeds",
+        "1.2",
+        "--turn-rates",
+        "0,45",
+        "--scenario",
+        "constant",
+        "--no-report",
+        "-q",
+        "--json",
+    ]
+    completing = ["--complete-from", str(archive), "--complete-out", str(tmp_path / "out")]
+    assert finished(command, ["evaluate", str(takes), *completing, *asked]) == 1
+    said = capsys.readouterr()
+    assert json.loads(said.out)["not_done"] == {}
+    assert said.err.startswith("gmr: left out odd.bvh of archive: another skeleton")

@@ -17,6 +17,7 @@ from gmr.cli.choosing import (
     earlier_clips,
     noticed,
     read_clips,
+    refused_clips,
 )
 from gmr.cli.common import say
 from gmr.cli.evaluation_options import evaluation_options
@@ -157,6 +158,6 @@ def complete(
         )
     else:
         click.echo("\n".join([completion_words(found), "", f"Page: {written}"]))
-    for sentence in (*left_out(failed), *earlier_clips(found, out)):
+    for sentence in (*left_out(failed), *refused_clips(found), *earlier_clips(found, out)):
         say(sentence)
     return 1 if failed or found.refused else 0

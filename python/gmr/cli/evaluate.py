@@ -16,7 +16,6 @@ from gmr.cli.choosing import (
     check_completing,
     complete_folder,
     completing_options,
-    earlier_clips,
     read_dataset,
 )
 from gmr.cli.cluster_options import check_workers, cluster_options
@@ -210,20 +209,20 @@ def evaluate(
             assert read is not None
             given = partial(complete_folder, found, read.motions, completing, phases, **reading)
             later.add("completed", "--complete-from", partial(given, report=not no_report))
+        chosen = later.added.get("completed")
+        completed = chosen if isinstance(chosen, Completed) else None
+        if completed is not None and completed.nothing is not None:
+            later.failed["--complete-from"] = completed.nothing
         sections = [each.section() for each in later.added.values()]
         written = _write(found, None if no_report else out, tables, figures, phases, sections)
     click.echo(as_object(found, written, later) if as_json else in_words(found, written))
     for each in later.added.values() if not as_json else ():
         click.echo(each.words())
-    chosen = later.added.get("completed")
-    completed = [chosen] if isinstance(chosen, Completed) else []
-    earlier = [sentence for each in completed for sentence in earlier_clips(each.found, each.folder)]
-    for sentence in (*left_out(found.failed), *earlier, *later.told()):
+    for sentence in (*left_out(found.failed), *(completed.told() if completed else ()), *later.told()):
         say(sentence)
     if later.interrupted:
         return INTERRUPTED
-    refused = any(each.found.refused for each in completed)
-    return 1 if found.failed or refused or later.failed else 0
+    return 1 if found.failed or later.failed or (completed and completed.lacking) else 0
 
 
 def _evaluated(sources: Sequence[Path | Read], **settings: Any) -> Evaluation | Comparison:

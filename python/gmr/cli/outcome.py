@@ -12,17 +12,22 @@ from gmr.cli.progress import Phases
 from gmr.errors import GmrError
 from gmr.listing import listed
 
-__all__ = ["at_place", "left_out", "refuse_inside", "refuse_one_place", "trouble_with_files"]
+__all__ = ["alike", "at_place", "left_out", "refuse_inside", "refuse_one_place", "trouble_with_files"]
 
 
 def left_out(failed: Mapping[str, str]) -> Iterator[str]:
     """A sentence for each reason for which files were left out."""
-    files: dict[str, list[str]] = {}
-    for file, why in failed.items():
-        files.setdefault(why, []).append(file)
-    for why, alike in files.items():
-        named = len(alike) == 1 and alike[0] in why
-        yield f"left out {why}" if named else f"left out {listed(alike, 5)}: {why}"
+    for why, files in alike(failed).items():
+        named = len(files) == 1 and files[0] in why
+        yield f"left out {why}" if named else f"left out {listed(files, 5)}: {why}"
+
+
+def alike(failed: Mapping[str, str]) -> dict[str, list[str]]:
+    """Those of one reason, by the reason."""
+    found: dict[str, list[str]] = {}
+    for name, why in failed.items():
+        found.setdefault(why, []).append(name)
+    return found
 
 
 def refuse_inside(out: Path, dataset: Path, option: str) -> None:
