@@ -18,7 +18,7 @@ from gmr.completion.choosing import bound, on_plan
 from gmr.completion.queries import queries_of
 from gmr.completion.shortfall import shortfalls
 from gmr.completion.tempo import rows_of
-from gmr.completion.words import headline, sentences
+from gmr.completion.words import change_sentence, headline, sentences
 from gmr.evaluation.scenario import constant_trials
 from gmr.evaluation.simulation import simulated
 from gmr.matching import LOCOMOTION, Database, Profile, Status, run_trials
@@ -134,6 +134,22 @@ def test_a_dataset_without_holes_is_left_alone(straight: dict[str, gmr.Motion]) 
     assert found.after is found.before
     assert headline(found).startswith("Nothing is missing")
     assert not any("takes away" in sentence for sentence in sentences(found))
+
+
+def test_the_map_of_changes_says_what_changed_and_nothing_where_nothing_did(
+    completed: Completion, straight: dict[str, gmr.Motion]
+) -> None:
+    assert "; the greatest gain is at " in change_sentence(completed)
+    none = complete_from(straight, {"more.bvh": walker(4, 1.2)}, speeds=(1.2,), turn_rates_deg=(0.0,))
+    assert change_sentence(none) == "Nothing was added, so no trial has changed."
+    unmoved = replace(completed, after=completed.before)
+    assert change_sentence(unmoved) == (
+        "No trial comes closer to the plan by 10 cm or more, none strays farther from it by as much."
+    )
+    backwards = replace(completed, before=completed.after, after=completed.before)
+    assert change_sentence(backwards).startswith(
+        "No trial comes closer to the plan by 10 cm or more, 4 stray"
+    )
 
 
 def test_a_walk_is_chosen_where_a_walk_is_wanted() -> None:
