@@ -489,3 +489,15 @@ def test_nothing_is_said_to_be_undone_where_some_clips_can_be_used(
     said = capsys.readouterr()
     assert json.loads(said.out)["not_done"] == {}
     assert said.err.startswith("gmr: left out odd.bvh of archive: another skeleton")
+
+
+def test_the_other_folder_is_named_where_none_of_its_clips_can_be_used(
+    straight: dict[str, gmr.Motion],
+) -> None:
+    short = {"short.bvh": walker(0.5, 1.2, LEFT)}
+    asked: dict[str, Any] = {"source": "archive", "speeds": (1.2,), "turn_rates_deg": TURNS}
+    with pytest.raises(gmr.DatasetError, match=r"^no clip of archive can be used: no clip lasts the 1.00 s"):
+        complete_from(straight, short, **asked)
+    found = complete_from(straight, short, fill=synthesised(seconds=2), **asked)
+    assert found.refused["short.bvh"].startswith("no clip lasts the 1.00 s")
+    assert found.considered == 0
