@@ -252,7 +252,7 @@ def complete_folder(
         threads=threads,
         **reading,
     )
-    found = replace(found, noticed=noticed([others]))
+    found = replace(found, noticed=(*noticed([others]), *found.noticed))
     with at_place(completing.out):
         write_added(found, completing.out, source=completing.source, progress=phases.tell)
         if report and found.added:

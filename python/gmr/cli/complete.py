@@ -134,7 +134,7 @@ def complete(
         failed = dict(takes.failed)
         if source is None:
             found = completed(takes.motions, fill, progress=phases.tell, **settings)
-            found = replace(found, noticed=noticed([takes], found.before.failed))
+            found = replace(found, noticed=(*noticed([takes], found.before.failed), *found.before.notes))
         else:
             others = read_clips(source, threads, phases)
             failed |= {str(source / path): why for path, why in others.failed.items()}
@@ -148,7 +148,9 @@ def complete(
                 progress=phases.tell,
                 **settings,
             )
-            found = replace(found, noticed=noticed([takes, others], found.before.failed))
+            of_takes = (f"{found.dataset}: {note}" for note in found.before.notes)
+            of_files = noticed([takes, others], found.before.failed)
+            found = replace(found, noticed=(*of_files, *of_takes, *found.noticed))
         with at_place(out):
             written = write_completion(found, out, source=source, progress=phases.tell)
     failed |= found.before.failed

@@ -52,7 +52,7 @@ class Completion:
         refused: clips that could not be chosen, and why.
         considered: how many clips could have been chosen.
         held_before: how many trials held before the first choice, with the features scaled as for choosing.
-        noticed: what was odd about the files that all this was read from, in sentences.
+        noticed: what was noticed about the files that all this was read from, in sentences.
     """
 
     dataset: str
