@@ -24,6 +24,7 @@ from gmr.evaluation.simulation import simulated
 from gmr.matching import LOCOMOTION, Database, Profile, Status, run_trials
 from gmr.matching.trial import Tracking
 from gmr.pruning.outcomes import outcomes_of
+from restless import without_rest
 from walkers import CMU, walker
 
 DEMO = Path(gmr.__file__).parent / "data" / "demo"
@@ -501,3 +502,32 @@ def test_the_other_folder_is_named_where_none_of_its_clips_can_be_used(
     found = complete_from(straight, short, fill=synthesised(seconds=2), **asked)
     assert found.refused["short.bvh"].startswith("no clip lasts the 1.00 s")
     assert found.considered == 0
+
+
+def test_clips_without_a_rest_pose_are_laid_by_the_frame_in_which_they_stand(
+    straight: dict[str, gmr.Motion],
+) -> None:
+    names = {part: f"mixamorig:{name}" for part, name in CMU.items()}
+    restless = {"left.bvh": without_rest(walker(8, 1.2, LEFT, names=names), 3)}
+    asked: dict[str, Any] = {"source": "archive", "speeds": (1.2,), "turn_rates_deg": TURNS}
+    found = complete_from(straight, restless, lay=True, **asked)
+    assert {choice.candidate.how.split(",")[0] for choice in found.choices} == {"laid on this skeleton"}
+    assert found.choices[-1].held == 3
+    assert any("1 clip of another skeleton has no rest pose" in note for note in found.noticed)
+
+
+def test_clips_that_cannot_be_laid_for_one_reason_are_told_in_one_sentence(
+    straight: dict[str, gmr.Motion],
+) -> None:
+    bodiless = gmr.Skeleton.post_rotation(["a", "b"], [-1, 0], np.array([[0, 0, 0], [0, 1, 0]], float))
+    still = np.tile([0.0, 0.0, 0.0, 1.0], (90, bodiless.slot_count, 1))
+    names = ("one/a.bvh", "two/b.bvh")
+    others = {
+        name: gmr.Motion.from_pose(bodiless, still, np.zeros((90, 1, 3)), 1 / 60, name=f"/archive/{name}")
+        for name in names
+    }
+    asked: dict[str, Any] = {"source": "archive", "speeds": (1.2,), "turn_rates_deg": TURNS}
+    found = complete_from(straight, others, lay=True, **asked)
+    assert set(found.refused) == set(names)
+    assert len(set(found.refused.values())) == 1
+    assert sum("of archive were not considered" in sentence for sentence in sentences(found)) == 1

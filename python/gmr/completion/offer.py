@@ -7,7 +7,7 @@ dataset's skeleton or refused, and clips with another up axis are turned to the 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -15,7 +15,8 @@ from gmr.completion.candidates import Candidate, on_skeleton, variants
 from gmr.completion.choosing import joined
 from gmr.completion.tempo import Rows, rows_of
 from gmr.completion.up import standing, turned_up
-from gmr.errors import DatasetError
+from gmr.errors import DatasetError, GmrError
+from gmr.evaluation.words import count
 from gmr.matching.database import Database
 from gmr.matching.survey import survey
 from gmr.motion import Motion
@@ -134,7 +135,8 @@ def offer_of(
     """
     up, like = kind.stands(kind.motions)
     made = make(like)
-    usable, laid, refused = on_skeleton(others, kind.whole.skeleton, _layer(like) if lay else None)
+    layer = _Layer(like) if lay else None
+    usable, laid, refused = on_skeleton(others, kind.whole.skeleton, layer)
     own = {name: motion for name, motion in usable.items() if name not in laid}
     came_up = _up_of(kind, own, up)
     offer = Offer(up, {**usable, **made}, came_up, refused=refused)
@@ -148,6 +150,7 @@ def offer_of(
     ]
     if not offer.rows and any(troubles):
         raise DatasetError(f"no clip of {source} can be used: {next(filter(None, troubles))}")
+    offer.notes += tuple(layer.notes()) if layer else ()
     if turned:
         offer.notes += (
             f"Its files have {came_up} up, those of the dataset {up}: what is chosen is turned to {up} up.",
@@ -191,7 +194,29 @@ def _as_made(name: str, *, mirror: bool) -> Iterator[Candidate]:
     yield Candidate(name, made=True)
 
 
-def _layer(like: Motion) -> Callable[[Motion], Motion]:
-    from gmr.skinning.driving.other_skeleton import retarget
+class _Layer:
+    """Lays motions on the skeleton of another, and counts those that it took a frame for the rest pose of."""
 
-    return lambda motion: retarget(motion, like).motion
+    def __init__(self, like: Motion) -> None:
+        self.like, self.stood = like, 0
+
+    def __call__(self, motion: Motion) -> Motion:
+        from gmr.skinning.driving.other_skeleton import retarget
+        from gmr.skinning.driving.rest_frame import rest_frame
+
+        # Without its name, so that the same trouble with many clips reads the same.
+        nameless = replace(motion, name=None)
+        try:
+            laid = retarget(nameless, self.like).motion
+        except GmrError:
+            if (frame := rest_frame(nameless)) is None:
+                raise
+            laid = retarget(nameless, self.like, rest=frame).motion
+            self.stood += 1
+        return replace(laid, name=motion.name)
+
+    def notes(self) -> Iterator[str]:
+        """Which rest poses were taken, in a sentence, where that had to be decided."""
+        if self.stood:
+            has = count(self.stood, "clip of another skeleton has", "clips of another skeleton have")
+            yield f"{has} no rest pose: laid on the dataset's by the frame in which each stands best."
