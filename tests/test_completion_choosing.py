@@ -519,15 +519,17 @@ def test_clips_without_a_rest_pose_are_laid_by_the_frame_in_which_they_stand(
 def test_clips_that_cannot_be_laid_for_one_reason_are_told_in_one_sentence(
     straight: dict[str, gmr.Motion],
 ) -> None:
-    bodiless = gmr.Skeleton.post_rotation(["a", "b"], [-1, 0], np.array([[0, 0, 0], [0, 1, 0]], float))
-    still = np.tile([0.0, 0.0, 0.0, 1.0], (90, bodiless.slot_count, 1))
+    strange = walker(2, 1.2, names={part: f"mixamorig:{name}" for part, name in CMU.items()})
+    rotations = strange.rotations.copy()
+    rotations[:, strange.skeleton.index("mixamorig:LeftUpLeg")] = (1.0, 0.0, 0.0, 0.0)
+    kicking = gmr.Motion.from_pose(
+        strange.skeleton, rotations, strange.translations, strange.frame_time, unit=1.0
+    )
     names = ("one/a.bvh", "two/b.bvh")
-    others = {
-        name: gmr.Motion.from_pose(bodiless, still, np.zeros((90, 1, 3)), 1 / 60, name=f"/archive/{name}")
-        for name in names
-    }
+    others = {name: replace(without_rest(kicking, 1), name=f"/archive/{name}") for name in names}
     asked: dict[str, Any] = {"source": "archive", "speeds": (1.2,), "turn_rates_deg": TURNS}
     found = complete_from(straight, others, lay=True, **asked)
     assert set(found.refused) == set(names)
     assert len(set(found.refused.values())) == 1
+    assert "stands in no frame" in found.refused[names[0]]
     assert sum("of archive were not considered" in sentence for sentence in sentences(found)) == 1
