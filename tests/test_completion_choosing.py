@@ -18,12 +18,13 @@ from gmr.completion.choosing import bound, on_plan
 from gmr.completion.queries import queries_of
 from gmr.completion.shortfall import shortfalls
 from gmr.completion.tempo import rows_of
-from gmr.completion.words import headline, sentences
+from gmr.completion.words import change_sentence, headline, sentences
 from gmr.evaluation.scenario import constant_trials
 from gmr.evaluation.simulation import simulated
 from gmr.matching import LOCOMOTION, Database, Profile, Status, run_trials
 from gmr.matching.trial import Tracking
 from gmr.pruning.outcomes import outcomes_of
+from restless import without_rest
 from walkers import CMU, walker
 
 DEMO = Path(gmr.__file__).parent / "data" / "demo"
@@ -134,6 +135,22 @@ def test_a_dataset_without_holes_is_left_alone(straight: dict[str, gmr.Motion]) 
     assert found.after is found.before
     assert headline(found).startswith("Nothing is missing")
     assert not any("takes away" in sentence for sentence in sentences(found))
+
+
+def test_the_map_of_changes_says_what_changed_and_nothing_where_nothing_did(
+    completed: Completion, straight: dict[str, gmr.Motion]
+) -> None:
+    assert "; the greatest gain is at " in change_sentence(completed)
+    none = complete_from(straight, {"more.bvh": walker(4, 1.2)}, speeds=(1.2,), turn_rates_deg=(0.0,))
+    assert change_sentence(none) == "Nothing was added, so no trial has changed."
+    unmoved = replace(completed, after=completed.before)
+    assert change_sentence(unmoved) == (
+        "No trial comes closer to the plan by 10 cm or more, none strays farther from it by as much."
+    )
+    backwards = replace(completed, before=completed.after, after=completed.before)
+    assert change_sentence(backwards).startswith(
+        "No trial comes closer to the plan by 10 cm or more, 4 stray"
+    )
 
 
 def test_a_walk_is_chosen_where_a_walk_is_wanted() -> None:
@@ -401,3 +418,118 @@ def test_a_place_for_the_clips_that_cannot_be_is_found_before_the_work(
     completing = ["--complete-from", str(tmp_path), "--complete-out", str(place)]
     assert finished(command, ["evaluate", str(takes), *completing, "-q", "--no-report"]) == 1
     assert "Not a directory (while looking where to write)" in capsys.readouterr().err
+
+
+def test_clips_that_are_refused_are_told_like_files_that_are_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from gmr.cli.commands import gmr as command
+    from gmr.cli.common import finished
+
+    takes, archive = tmp_path / "takes", tmp_path / "archive"
+    takes.mkdir()
+    archive.mkdir()
+    gmr.write(walker(5, 1.2), takes / "straight.bvh")
+    names = {part: f"other {name}" if part == "head" else name for part, name in CMU.items()}
+    for name in ("a.bvh", "b.bvh"):
+        gmr.write(walker(5, 1.2, LEFT, names=names), archive / name)
+    (archive / "broken.bvh").write_text("HIERARCHY\n")
+    asked = ["--speeds", "1.2", "--turn-rates", "0,45", "-q", "--json"]
+    evaluate = [
+        "evaluate",
+        str(takes),
+        "--complete-from",
+        str(archive),
+        "--complete-out",
+        str(tmp_path / "a"),
+    ]
+    assert finished(command, [*evaluate, "--no-report", "--scenario", "constant", *asked]) == 1
+    said = capsys.readouterr()
+    told = json.loads(said.out)
+    assert told["not_done"]["--complete-from"].startswith("no clip of archive can be used: another skeleton")
+    assert set(told["completed"]["refused"]) == {"a.bvh", "b.bvh"}
+    lines = said.err.splitlines()
+    assert len(lines) == 3
+    assert "broken.bvh" in lines[0]
+    assert lines[1].startswith("gmr: left out a.bvh, b.bvh of archive: another skeleton than the dataset's")
+    assert lines[2].startswith(
+        "gmr: --complete-from came to nothing, all else is done: no clip of archive can"
+    )
+    complete = ["complete", str(takes), "--from", str(archive), "-o", str(tmp_path / "b")]
+    assert finished(command, [*complete, *asked]) == 1
+    again = capsys.readouterr().err.splitlines()
+    assert again == lines[:2]
+
+
+def test_nothing_is_said_to_be_undone_where_some_clips_can_be_used(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from gmr.cli.commands import gmr as command
+    from gmr.cli.common import finished
+
+    takes, archive = tmp_path / "takes", tmp_path / "archive"
+    takes.mkdir()
+    archive.mkdir()
+    gmr.write(walker(5, 1.2), takes / "straight.bvh")
+    gmr.write(walker(6, 1.2, LEFT), archive / "left.bvh")
+    names = {part: f"other {name}" if part == "head" else name for part, name in CMU.items()}
+    gmr.write(walker(5, 1.2, LEFT, names=names), archive / "odd.bvh")
+    asked = [
+        "--speeds",
+        "1.2",
+        "--turn-rates",
+        "0,45",
+        "--scenario",
+        "constant",
+        "--no-report",
+        "-q",
+        "--json",
+    ]
+    completing = ["--complete-from", str(archive), "--complete-out", str(tmp_path / "out")]
+    assert finished(command, ["evaluate", str(takes), *completing, *asked]) == 1
+    said = capsys.readouterr()
+    assert json.loads(said.out)["not_done"] == {}
+    assert said.err.startswith("gmr: left out odd.bvh of archive: another skeleton")
+
+
+def test_the_other_folder_is_named_where_none_of_its_clips_can_be_used(
+    straight: dict[str, gmr.Motion],
+) -> None:
+    short = {"short.bvh": walker(0.5, 1.2, LEFT)}
+    asked: dict[str, Any] = {"source": "archive", "speeds": (1.2,), "turn_rates_deg": TURNS}
+    with pytest.raises(gmr.DatasetError, match=r"^no clip of archive can be used: no clip lasts the 1.00 s"):
+        complete_from(straight, short, **asked)
+    found = complete_from(straight, short, fill=synthesised(seconds=2), **asked)
+    assert found.refused["short.bvh"].startswith("no clip lasts the 1.00 s")
+    assert found.considered == 0
+
+
+def test_clips_without_a_rest_pose_are_laid_by_the_frame_in_which_they_stand(
+    straight: dict[str, gmr.Motion],
+) -> None:
+    names = {part: f"mixamorig:{name}" for part, name in CMU.items()}
+    restless = {"left.bvh": without_rest(walker(8, 1.2, LEFT, names=names), 3)}
+    asked: dict[str, Any] = {"source": "archive", "speeds": (1.2,), "turn_rates_deg": TURNS}
+    found = complete_from(straight, restless, lay=True, **asked)
+    assert {choice.candidate.how.split(",")[0] for choice in found.choices} == {"laid on this skeleton"}
+    assert found.choices[-1].held == 3
+    assert any("1 clip of another skeleton has no rest pose" in note for note in found.noticed)
+
+
+def test_clips_that_cannot_be_laid_for_one_reason_are_told_in_one_sentence(
+    straight: dict[str, gmr.Motion],
+) -> None:
+    strange = walker(2, 1.2, names={part: f"mixamorig:{name}" for part, name in CMU.items()})
+    rotations = strange.rotations.copy()
+    rotations[:, strange.skeleton.index("mixamorig:LeftUpLeg")] = (1.0, 0.0, 0.0, 0.0)
+    kicking = gmr.Motion.from_pose(
+        strange.skeleton, rotations, strange.translations, strange.frame_time, unit=1.0
+    )
+    names = ("one/a.bvh", "two/b.bvh")
+    others = {name: replace(without_rest(kicking, 1), name=f"/archive/{name}") for name in names}
+    asked: dict[str, Any] = {"source": "archive", "speeds": (1.2,), "turn_rates_deg": TURNS}
+    found = complete_from(straight, others, lay=True, **asked)
+    assert set(found.refused) == set(names)
+    assert len(set(found.refused.values())) == 1
+    assert "stands in no frame" in found.refused[names[0]]
+    assert sum("of archive were not considered" in sentence for sentence in sentences(found)) == 1

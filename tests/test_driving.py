@@ -23,6 +23,7 @@ from gmr.quaternions import IDENTITY, about, conjugate, matrices, multiply, rota
 from gmr.skeleton import Skeleton
 from gmr.skinning import drive
 from gmr.skinning.driving.body_parts import find_body
+from restless import without_rest
 
 Floats = NDArray[np.float64]
 
@@ -197,33 +198,12 @@ def test_asf_and_bvh_of_one_take_drive_the_same() -> None:
     assert np.degrees(2 * np.arccos(np.minimum(np.abs((turns[0] * turns[1]).sum(axis=-1)), 1))).max() < 1.0
 
 
-def without_rest(motion: Motion, seed: int) -> Motion:
-    """The same places in every frame, from bones with frames of their own: at zero, no body stands."""
-    rng = np.random.default_rng(seed)
-    skeleton = motion.skeleton
-    count = skeleton.slot_count
-    own = rng.normal(size=(count, 4))
-    own /= np.linalg.norm(own, axis=1, keepdims=True)
-    local = multiply(motion.rotations, own)
-    offsets = skeleton.offsets.copy()
-    for joint in range(skeleton.joint_count):
-        slot = skeleton.slots[joint]
-        if slot >= 0:
-            offsets[joint] = rotated(conjugate(own[slot]), offsets[joint])
-            for child in skeleton.children[joint]:
-                below = skeleton.slots[child]
-                local[:, below] = multiply(
-                    conjugate(own[slot]), multiply(motion.rotations[:, below], own[below])
-                )
-    return Motion.from_pose(replace(skeleton, offsets=offsets), local, motion.translations, motion.frame_time)
-
-
 @pytest.mark.parametrize("seed", range(4))
 def test_a_motion_without_a_rest_pose_is_driven_from_a_frame(seed: int) -> None:
     motion = without_rest(SHORT, seed)
     assert np.allclose(motion.positions(dtype=np.float64), SHORT.positions(dtype=np.float64), atol=1e-9)
     character = figures.body()
-    with pytest.raises(GmrError, match=r"no rest pose.*rest=0"):
+    with pytest.raises(GmrError, match=r"no rest pose.*rest=0 in Python, gmr skin --rest 0$"):
         drive(motion, character)
     one, other = drive(motion, character, rest=3), drive(SHORT, character, rest=3)
     assert "frame 3" in one.report.rest

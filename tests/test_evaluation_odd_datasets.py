@@ -282,6 +282,38 @@ def test_notes_of_files_are_told_of_a_completion_too(
     assert says in told((tmp_path / "completed" / "index.html").read_text())
 
 
+def test_what_is_odd_is_told_of_the_dataset_and_of_the_folder_that_completes_it(
+    tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    takes = folder_of(tmp_path / "takes", {"turn": TURN, "slow": walker_bvh(Arc(4.0, 1.2, 40.0), 50.0)})
+    archive = folder_of(tmp_path / "archive", {"walk": z_up(walker_bvh(Arc(6.0, 1.0)))})
+    assert finished(command, ["complete", str(takes), "--from", str(archive), *SMALL]) == 0
+    rates = "The clips were recorded at 30 and 50 frames per second; all were brought to one rate."
+    turned = "archive: Its files have +Z up, those of the dataset +Y: what is chosen is turned to +Y up."
+    for said in (told(capsys.readouterr().out), told((tmp_path / "completed" / "index.html").read_text())):
+        assert f"takes: {rates}" in said
+        assert turned in said
+    asked = ["--scenario", "constant", "--no-report", *SMALL]
+    assert finished(command, ["evaluate", str(takes), "--complete-from", str(archive), *asked]) == 0
+    said = told(capsys.readouterr().out)
+    assert said.count(rates) == 1
+    assert turned in said
+    assert finished(command, ["complete", str(takes), *SMALL]) == 0
+    assert f"- {rates}" in told(capsys.readouterr().out)
+
+
+def test_what_is_odd_in_one_of_several_datasets_is_told_under_its_name(
+    tmp_path: Path, capsys: Captured
+) -> None:
+    upright = folder_of(tmp_path / "upright", {"walk": WALK})
+    lying = folder_of(tmp_path / "lying", {"walk": z_up(WALK)})
+    assert finished(command, ["evaluate", str(upright), str(lying), "--no-report", *SMALL]) == 0
+    said = told(capsys.readouterr().out)
+    assert said.count("The files have +Z up; they were turned to +Y.") == 1
+    assert said.index("upright: This dataset") < said.index("lying: This dataset") < said.index("have +Z up")
+
+
 def test_clips_of_which_none_could_be_tried_are_not_said_to_be_of_no_help(
     tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:

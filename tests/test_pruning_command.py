@@ -110,6 +110,8 @@ def test_what_could_not_be_done_is_told_to_machines_too(
         ("evaluate", "--prune", "30%", "--prune-out", "a/smaller"),
         ("evaluate", "--complete-from", "../archive"),
         ("complete",),
+        ("complete", "-o", "."),
+        ("complete", "--from", "../archive", "-o", "../takes"),
     ],
 )
 def test_clips_are_not_written_into_the_dataset_that_they_come_from(
@@ -121,6 +123,38 @@ def test_clips_are_not_written_into_the_dataset_that_they_come_from(
     assert finished(command, [options[0], ".", *options[1:], "--quiet"]) == 2
     assert "lies in ., and would be read as a part of it the next time; give --" in capsys.readouterr().err
     assert sorted(folder.rglob("*")) == before
+
+
+@pytest.mark.parametrize(
+    ("places", "named"),
+    [
+        (("--prune-out", "one", "--complete-out", "one"), "--complete-out and --prune-out are both one"),
+        (("--prune-out", "one", "--complete-out", "two/../one"), "--complete-out and --prune-out are both"),
+        (
+            ("--prune-out", "one/two", "--complete-out", "one"),
+            "--complete-out and --prune-out are one and one/two",
+        ),
+        (
+            ("--complete-out", "pruned/more"),
+            "--complete-out and --prune-out are pruned/more and pruned, one in",
+        ),
+        (("--tables", "completed"), "--complete-out and --tables are both completed"),
+        (("-o", "completed/after.html"), "--out is completed/after.html, where --complete-out writes"),
+    ],
+)
+def test_no_result_is_written_over_another(
+    places: tuple[str, ...], named: str, folder: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    elsewhere = folder.parent / "elsewhere"
+    elsewhere.mkdir()
+    write_walkers(folder.parent / "archive", TAKES)
+    monkeypatch.chdir(elsewhere)
+    asked = ("--prune", "lossless", "--complete-from", "../archive", *places)
+    assert run(folder, *SMALL, *asked) == 2
+    said = " ".join(capsys.readouterr().err.split())
+    assert named in said
+    assert "give" in said
+    assert not list(elsewhere.iterdir())
 
 
 def test_an_interrupt_after_the_trials_costs_neither_report_nor_what_was_done(

@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 import gmr
 from gmr.quaternions import matrices, rotated
 from gmr.skinning import retarget
+from gmr.skinning.driving.rest_frame import rest_frame
+from restless import without_rest
+from walkers import walker
 
 DEMO = Path(gmr.__file__).parent / "data" / "demo"
 
@@ -127,3 +130,25 @@ def test_what_is_no_body_is_refused(walk: gmr.Motion) -> None:
     like = gmr.Motion.from_pose(tail, np.tile([0.0, 0, 0, 1], (2, 2, 1)), np.zeros((2, 1, 3)), 0.01, unit=1.0)
     with pytest.raises(gmr.SkeletonError, match="no body is found"):
         retarget(walk, like)
+
+
+def test_a_motion_without_a_rest_pose_gets_the_frame_in_which_it_stands(walk: gmr.Motion) -> None:
+    assert rest_frame(walk) is None
+    moving = walk[40:100:4]
+    restless = without_rest(moving, 2)
+    frame = rest_frame(restless)
+    assert frame is not None
+    laid, usual = retarget(restless, walk, rest=frame).motion, retarget(moving, walk).motion
+    assert (directions(laid, LIMBS) * directions(usual, LIMBS)).sum(axis=2).min() > 0.98
+
+
+def test_a_motion_that_never_stands_gets_none() -> None:
+    walking = walker(1.0, 0.0)
+    rotations = walking.rotations.copy()
+    rotations[:, walking.skeleton.index("LeftUpLeg")] = (1.0, 0.0, 0.0, 0.0)
+    kicking = gmr.Motion.from_pose(
+        walking.skeleton, rotations, walking.translations, walking.frame_time, unit=1.0
+    )
+    assert rest_frame(kicking) is None
+    with pytest.raises(gmr.GmrError, match=r"stands in no frame.*in Python: gmr\.skinning\.retarget\("):
+        rest_frame(without_rest(kicking, 1))

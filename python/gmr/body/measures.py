@@ -10,7 +10,17 @@ from numpy.typing import NDArray
 
 from gmr.skeleton import Skeleton
 
-__all__ = ["UP_TURNS", "Poses", "fault", "leg_length", "path", "toe_directions", "turned_upright", "up_axis"]
+__all__ = [
+    "UP_TURNS",
+    "Poses",
+    "fault",
+    "leg_length",
+    "path",
+    "toe_directions",
+    "turned_from_upright",
+    "turned_upright",
+    "up_axis",
+]
 
 Poses = NDArray[np.float64]
 """(n, J, 3) world positions of sampled poses, in any one unit."""
@@ -40,6 +50,12 @@ _MATRICES: Mapping[str, tuple[tuple[int, int, int], ...]] = {
 def turned_upright(vectors: NDArray[np.float64], up: str) -> NDArray[np.float64]:
     """(..., 3) vectors of a world whose up axis is ``up``, turned so that +Y is up."""
     return vectors if up == "+Y" else vectors @ np.array(_MATRICES[up], np.float64).T
+
+
+def turned_from_upright(vectors: NDArray[np.float64], up: str) -> NDArray[np.float64]:
+    """(..., 3) vectors of a world whose up axis is +Y, turned so that ``up`` is: undoes
+    :func:`turned_upright`."""
+    return vectors if up == "+Y" else vectors @ np.array(_MATRICES[up], np.float64)
 
 
 def up_axis(poses: Poses, roles: Mapping[str, int]) -> str:

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 import click
 
 from gmr.cli.common import options_given
-from gmr.cli.outcome import at_place
+from gmr.cli.outcome import alike, at_place, left_out
 from gmr.cli.paragraphs import listed_sentences, paragraph
 from gmr.cli.plain_rows import plain_rows
 from gmr.cli.progress import Phases
+from gmr.listing import listed
 
 if TYPE_CHECKING:
     from gmr.completion import Completion
@@ -37,6 +38,7 @@ __all__ = [
     "noticed",
     "read_clips",
     "read_dataset",
+    "refused_clips",
 ]
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -163,10 +165,11 @@ def noticed(reads: Iterable[Read], excluded: Collection[str] = ()) -> tuple[str,
 
 @dataclass(frozen=True, slots=True)
 class Completed:
-    """What was chosen, and where it was written."""
+    """What was chosen, where it was written, and which files of the other folder cannot be read and why."""
 
     found: Completion
     folder: Path
+    failed: Mapping[str, str]
 
     def words(self) -> str:
         """For a terminal."""
@@ -178,6 +181,25 @@ class Completed:
         from gmr.completion import completion_section
 
         return completion_section(self.found)
+
+    @property
+    def lacking(self) -> bool:
+        """Whether some of the other folder's files or all could not be used."""
+        return bool(self.failed or self.found.refused)
+
+    def told(self) -> Iterator[str]:
+        """What could not be used, and what else lies where the clips were written, in sentences."""
+        yield from left_out(self.failed)
+        yield from refused_clips(self.found)
+        yield from earlier_clips(self.found, self.folder)
+
+    @property
+    def nothing(self) -> str | None:
+        """Why no clip could be tried; None where some could, or nothing was missing."""
+        of = self.found
+        if of.added or of.considered or not of.refused:
+            return None
+        return f"no clip of {of.source} can be used: {next(iter(of.refused.values()))}"
 
     def summary(self) -> dict[str, Any]:
         """For a machine: plain values."""
@@ -230,12 +252,13 @@ def complete_folder(
         threads=threads,
         **reading,
     )
-    found = replace(found, noticed=noticed([others]))
+    found = replace(found, noticed=(*noticed([others]), *found.noticed))
     with at_place(completing.out):
         write_added(found, completing.out, source=completing.source, progress=phases.tell)
         if report and found.added:
             found.after.report(completing.out / "after.html")
-    return Completed(found, completing.out)
+    failed = {str(completing.source / path): why for path, why in others.failed.items()}
+    return Completed(found, completing.out, failed)
 
 
 def completion_words(found: Completion) -> str:
@@ -243,6 +266,12 @@ def completion_words(found: Completion) -> str:
     from gmr.completion.words import headline, sentences
 
     return "\n".join([*paragraph(headline(found)), "", *listed_sentences(sentences(found))])
+
+
+def refused_clips(found: Completion) -> Iterator[str]:
+    """A sentence for each reason for which clips could not be chosen."""
+    for why, names in alike(found.refused).items():
+        yield f"left out {listed(names, 5)} of {found.source}: {why}"
 
 
 def earlier_clips(found: Completion, folder: Path) -> Iterator[str]:

@@ -17,6 +17,7 @@ from gmr.cli.choosing import (
     earlier_clips,
     noticed,
     read_clips,
+    refused_clips,
 )
 from gmr.cli.common import say
 from gmr.cli.evaluation_options import evaluation_options
@@ -124,7 +125,7 @@ def complete(
         "threads": threads,
         "schema": schema,
     }
-    refuse_inside(out, folder, "--out")
+    refuse_inside(out / "clips", folder, "--out")
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):
         with at_place(out):
@@ -133,7 +134,7 @@ def complete(
         failed = dict(takes.failed)
         if source is None:
             found = completed(takes.motions, fill, progress=phases.tell, **settings)
-            found = replace(found, noticed=noticed([takes], found.before.failed))
+            found = replace(found, noticed=(*noticed([takes], found.before.failed), *found.before.notes))
         else:
             others = read_clips(source, threads, phases)
             failed |= {str(source / path): why for path, why in others.failed.items()}
@@ -147,7 +148,9 @@ def complete(
                 progress=phases.tell,
                 **settings,
             )
-            found = replace(found, noticed=noticed([takes, others], found.before.failed))
+            of_takes = (f"{found.dataset}: {note}" for note in found.before.notes)
+            of_files = noticed([takes, others], found.before.failed)
+            found = replace(found, noticed=(*of_files, *of_takes, *found.noticed))
         with at_place(out):
             written = write_completion(found, out, source=source, progress=phases.tell)
     failed |= found.before.failed
@@ -157,6 +160,6 @@ def complete(
         )
     else:
         click.echo("\n".join([completion_words(found), "", f"Page: {written}"]))
-    for sentence in (*left_out(failed), *earlier_clips(found, out)):
+    for sentence in (*left_out(failed), *refused_clips(found), *earlier_clips(found, out)):
         say(sentence)
     return 1 if failed or found.refused else 0

@@ -16,14 +16,13 @@ from gmr.cli.choosing import (
     check_completing,
     complete_folder,
     completing_options,
-    earlier_clips,
     read_dataset,
 )
 from gmr.cli.cluster_options import check_workers, cluster_options
 from gmr.cli.common import INTERRUPTED, options_given, say
 from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.evaluation_results import as_object, in_words
-from gmr.cli.outcome import at_place, left_out, refuse_inside, trouble_with_files
+from gmr.cli.outcome import at_place, left_out, refuse_inside, refuse_one_place, trouble_with_files
 from gmr.cli.progress import Phases
 from gmr.cli.pruning import check_pruning, prune_folder, pruning_options
 from gmr.cli.scenarios import check_scenarios, scenario_options
@@ -162,14 +161,18 @@ def evaluate(
         raise click.UsageError("--complete-from completes one dataset; give one folder.")
     if len(folders) > 1 and tune:
         raise click.UsageError("--tune finds the weights of one dataset; give one folder.")
+    if completing is not None:
+        _check_apart(
+            completing.out, prune_out if prune is not None else None, tables, None if no_report else out
+        )
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):
         _check_places(None if no_report else out, tables, figures, phases)
         if prune is not None:
-            refuse_inside(prune_out, folders[0], "--prune-out")
             check_pruning(prune_out, phases)
+            refuse_inside(prune_out, folders[0], "--prune-out")
         if completing is not None:
-            refuse_inside(completing.out, folders[0], "--complete-out")
+            refuse_inside(completing.out / "clips", folders[0], "--complete-out")
             check_completing(completing, phases)
         reading: dict[str, Any] = {"threads": threads, "names": names, "unit": unit}
         # Read once: a completion needs the clips themselves too.
@@ -206,26 +209,42 @@ def evaluate(
             assert read is not None
             given = partial(complete_folder, found, read.motions, completing, phases, **reading)
             later.add("completed", "--complete-from", partial(given, report=not no_report))
+        chosen = later.added.get("completed")
+        completed = chosen if isinstance(chosen, Completed) else None
+        if completed is not None and completed.nothing is not None:
+            later.failed["--complete-from"] = completed.nothing
         sections = [each.section() for each in later.added.values()]
         written = _write(found, None if no_report else out, tables, figures, phases, sections)
     click.echo(as_object(found, written, later) if as_json else in_words(found, written))
     for each in later.added.values() if not as_json else ():
         click.echo(each.words())
-    chosen = later.added.get("completed")
-    completed = [chosen] if isinstance(chosen, Completed) else []
-    earlier = [sentence for each in completed for sentence in earlier_clips(each.found, each.folder)]
-    for sentence in (*left_out(found.failed), *earlier, *later.told()):
+    for sentence in (*left_out(found.failed), *(completed.told() if completed else ()), *later.told()):
         say(sentence)
     if later.interrupted:
         return INTERRUPTED
-    refused = any(each.found.refused for each in completed)
-    return 1 if found.failed or refused or later.failed else 0
+    return 1 if found.failed or later.failed or (completed and completed.lacking) else 0
 
 
 def _evaluated(sources: Sequence[Path | Read], **settings: Any) -> Evaluation | Comparison:
     import gmr
 
     return gmr.evaluate(sources[0], **settings) if len(sources) == 1 else gmr.compare(sources, **settings)
+
+
+def _check_apart(completed: Path, pruned: Path | None, tables: Path | None, report: Path | None) -> None:
+    """Refuse places of which one result would overwrite the other."""
+    if pruned is not None:
+        refuse_one_place(("--complete-out", completed), ("--prune-out", pruned))
+    if tables is not None and tables.resolve() == completed.resolve():
+        raise click.UsageError(
+            f"--complete-out and --tables are both {tables}, and each writes a trials.csv and a clips.csv; "
+            "give them two folders."
+        )
+    if report is not None and report.resolve() == (completed / "after.html").resolve():
+        raise click.UsageError(
+            f"--out is {report}, where --complete-out writes the report of the completed dataset; give --out "
+            "another name."
+        )
 
 
 def _check_places(out: Path | None, tables: Path | None, figures: Path | None, phases: Phases) -> None:

@@ -18,11 +18,13 @@ __all__ = ["as_object", "in_words"]
 
 
 def in_words(found: Evaluation | Comparison, written: Mapping[str, Any]) -> str:
-    """The verdict, for several datasets also the first sentence on each, and where the results lie."""
+    """The verdict, for several datasets also the first sentence on each and what was noticed about it, and
+    where the results lie."""
     lines = [*paragraph(found.verdict.headline), "", *listed_sentences(found.verdict.sentences)]
     evaluations = _evaluations(found)
     for evaluation in evaluations if len(evaluations) > 1 else ():
         lines += ["", *paragraph(f"{evaluation.dataset}: {evaluation.verdict.headline}")]
+        lines += ["", *listed_sentences(evaluation.notes)] if evaluation.notes else []
     if written:
         lines.append("")
     if "tables" in written:

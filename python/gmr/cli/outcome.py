@@ -12,25 +12,44 @@ from gmr.cli.progress import Phases
 from gmr.errors import GmrError
 from gmr.listing import listed
 
-__all__ = ["at_place", "left_out", "refuse_inside", "trouble_with_files"]
+__all__ = ["alike", "at_place", "left_out", "refuse_inside", "refuse_one_place", "trouble_with_files"]
 
 
 def left_out(failed: Mapping[str, str]) -> Iterator[str]:
     """A sentence for each reason for which files were left out."""
-    files: dict[str, list[str]] = {}
-    for file, why in failed.items():
-        files.setdefault(why, []).append(file)
-    for why, alike in files.items():
-        named = len(alike) == 1 and alike[0] in why
-        yield f"left out {why}" if named else f"left out {listed(alike, 5)}: {why}"
+    for why, files in alike(failed).items():
+        named = len(files) == 1 and files[0] in why
+        yield f"left out {why}" if named else f"left out {listed(files, 5)}: {why}"
+
+
+def alike(failed: Mapping[str, str]) -> dict[str, list[str]]:
+    """Those of one reason, by the reason."""
+    found: dict[str, list[str]] = {}
+    for name, why in failed.items():
+        found.setdefault(why, []).append(name)
+    return found
 
 
 def refuse_inside(out: Path, dataset: Path, option: str) -> None:
-    """Refuses a folder for clips that is part of the dataset which they come from."""
-    if dataset.resolve() in out.resolve().parents:
+    """Refuses a folder for clips that is part of the dataset which they come from, or is the dataset."""
+    place = out.resolve()
+    if dataset.resolve() in (place, *place.parents):
+        where = "is the dataset itself" if place == dataset.resolve() else f"lies in {dataset}"
         raise click.UsageError(
-            f"{out} lies in {dataset}, and would be read as a part of it the next time; "
+            f"{out} {where}, and would be read as a part of it the next time; "
             f"give {option} a place elsewhere."
+        )
+
+
+def refuse_one_place(one: tuple[str, Path], other: tuple[str, Path]) -> None:
+    """Refuses two options, each with its folder, of which one would write into what the other has written."""
+    (option, place), (second, elsewhere) = one, other
+    first, last = place.resolve(), elsewhere.resolve()
+    if first == last or first in last.parents or last in first.parents:
+        where = f"are both {place}" if first == last else f"are {place} and {elsewhere}, one in the other"
+        raise click.UsageError(
+            f"{option} and {second} {where}: what one writes the other would overwrite or add to; give them "
+            "folders apart from each other."
         )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 from typing import Final
 
+from gmr.completion.up import mirrored_upright
 from gmr.errors import GmrError
 from gmr.forest import home
 from gmr.matching.survey import difference
@@ -33,6 +34,7 @@ class Candidate:
         factor: how many times as fast it is played.
         made: whether it was synthesised.
         laid: whether it was laid on the dataset's skeleton from another one.
+        turned: the axis that it was turned to have up, as the dataset has; "" where it has so by itself.
     """
 
     source: str
@@ -40,14 +42,16 @@ class Candidate:
     factor: float = 1.0
     made: bool = False
     laid: bool = False
+    turned: str = ""
 
     @property
     def how(self) -> str:
-        """In words: "as it is", "mirrored, 0.8 times as fast", "synthesised"."""
+        """In words: "as it is", "mirrored, 0.8 times as fast", "turned to +Y up", "synthesised"."""
         if self.made:
             return SYNTHESISED
         parts = [
             *(["laid on this skeleton"] if self.laid else []),
+            *([f"turned to {self.turned} up"] if self.turned else []),
             *(["mirrored"] if self.mirrored else []),
             *([f"{self.factor:g} times as fast"] if self.factor != 1 else []),
         ]
@@ -56,7 +60,7 @@ class Candidate:
     @property
     def whole(self) -> bool:
         """Whether it is a file of the folder, unchanged."""
-        return not (self.made or self.laid or self.mirrored) and self.factor == 1
+        return not (self.made or self.laid or self.turned or self.mirrored) and self.factor == 1
 
     @property
     def name(self) -> str:
@@ -64,24 +68,29 @@ class Candidate:
         path = PurePosixPath(self.source)
         if self.whole or self.made:
             return path.name
-        done = ("_laid" if self.laid else "") + ("_mirrored" if self.mirrored else "")
+        done = "".join(f"_{what}" for what in ("laid", "turned", "mirrored") if getattr(self, what))
         pace = f"_x{self.factor:g}" if self.factor != 1 else ""
         return f"{path.stem}{done}{pace}.bvh"
 
-    def of(self, motion: Motion) -> Motion:
-        """The clip, from the motion of its source; a converter's T-pose stays only in a file left whole."""
+    def of(self, motion: Motion, up: str = "+Y") -> Motion:
+        """The clip, from the motion of its source; a converter's T-pose stays only in a file left whole.
+
+        Args:
+            motion: on the dataset's skeleton, and turned to its up axis where that was to be done.
+            up: the dataset's up axis.
+        """
         if self.whole:
             return motion
         moving = motion[leading_rest_frames(motion) :]
-        seen = moving.mirror() if self.mirrored else moving
+        seen = mirrored_upright(moving, up) if self.mirrored else moving
         return replace(seen, frame_time=seen.frame_time / self.factor) if self.factor != 1 else seen
 
 
-def variants(source: str, *, mirror: bool, laid: bool) -> Iterator[Candidate]:
+def variants(source: str, *, mirror: bool, laid: bool, turned: str = "") -> Iterator[Candidate]:
     """What can be made of one clip of the folder; ``mirror``: also its mirror image."""
     for mirrored in (False, True) if mirror else (False,):
         for factor in FACTORS:
-            yield Candidate(source, mirrored, factor, laid=laid)
+            yield Candidate(source, mirrored, factor, laid=laid, turned=turned)
 
 
 def on_skeleton(

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from gmr.completion.candidates import SYNTHESISED
 from gmr.completion.choosing import Choice
 from gmr.completion.holes import Ask, grid_of, holes
+from gmr.completion.offer import Kind
 from gmr.errors import DatasetError
 from gmr.evaluation.compare import renamed
 from gmr.evaluation.evaluate import evaluate
@@ -51,7 +52,7 @@ class Completion:
         refused: clips that could not be chosen, and why.
         considered: how many clips could have been chosen.
         held_before: how many trials held before the first choice, with the features scaled as for choosing.
-        noticed: what was odd about the files that all this was read from, in sentences.
+        noticed: what was noticed about the files that all this was read from, in sentences.
     """
 
     dataset: str
@@ -169,7 +170,7 @@ def complete(
 
     settings = {"scenarios": "constant", **settings}
     before = renamed(evaluate(motions, progress=phase("before"), **settings), dataset)
-    like = next(motion for name, motion in motions.items() if name not in before.failed)
+    like = _like(before, motions, settings)
     added: dict[str, Motion] = {}
     asked: dict[str, Ask] = {}
     not_made: list[Ask] = []
@@ -192,6 +193,14 @@ def complete(
             f"{left_out[0]} cannot be evaluated beside the dataset's own clips: {after.failed[left_out[0]]}"
         )
     return Completion(dataset, before, after, added, asked, tuple(not_made))
+
+
+def _like(before: Evaluation, motions: Mapping[str, Motion], settings: Mapping[str, Any]) -> Motion:
+    """A clip on whose skeleton others can be laid: one that stands as most of the dataset does."""
+    assert before.simulation is not None
+    usable = {name: motion for name, motion in motions.items() if name not in before.failed}
+    reading = {name: settings.get(name) for name in ("names", "unit")}
+    return Kind(before.simulation.database, usable, reading).stands(usable)[1]
 
 
 def completed_name(dataset: str) -> str:

@@ -5,24 +5,25 @@ See :mod:`gmr.completion.choosing` for how clips are chosen.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
-from gmr.completion.candidates import Candidate, on_skeleton, variants
-from gmr.completion.choosing import Choice, Contest, choose, joined, on_plan, shortlisted
+from gmr.completion.candidates import Candidate
+from gmr.completion.choosing import Choice, Contest, choose, on_plan, shortlisted
 from gmr.completion.complete import Completion, Filler, Progress, completed_name, with_straight
 from gmr.completion.holes import holes
+from gmr.completion.offer import Kind, Offer, offer_of
 from gmr.completion.shortfall import shortfalls
-from gmr.completion.tempo import Rows, rows_of
 from gmr.errors import DatasetError
 from gmr.evaluation.compare import renamed
 from gmr.evaluation.evaluate import evaluate
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.simulation import Simulation
-from gmr.matching.database import Database
-from gmr.matching.trial import Tracking
+from gmr.matching.trial import Tracking, TrialLog
 from gmr.motion import Motion
 from gmr.threads import thread_count
 
@@ -55,6 +56,8 @@ def complete_from(
 ) -> Completion:
     """Complete a dataset from other clips: as they are, mirrored, or played 0.8 to 1.25 times as fast.
 
+    Clips with another up axis than the dataset are turned to the dataset's, for a folder has one.
+
     The clips are ranked and tried with the features scaled as in the dataset by itself; the second evaluation
     scales them anew over both, as whoever evaluates the completed dataset will see it.
 
@@ -76,7 +79,7 @@ def complete_from(
         Both evaluations, the clips chosen with what each took away, and the clips refused with why.
 
     Raises:
-        DatasetError: as :func:`gmr.evaluate`; or there are no other clips.
+        DatasetError: as :func:`gmr.evaluate`; or there are no other clips, or none that can be used.
     """
     if not others:
         raise DatasetError(f"{source} holds no clip to complete the dataset from")
@@ -96,12 +99,12 @@ def complete_from(
         settings["schema"] = before.simulation.database.schema
     assert before.simulation is not None
     hunt = _Hunt(before, motions, {"names": names, "unit": unit}, thread_count(threads), tell)
-    choices, refused, added, held = hunt.found(others, fill, lay, at_most)
+    found = hunt.found(others, source, fill, lay, at_most)
     after = before
-    if added:
-        both = evaluate({**motions, **added}, progress=phase("after"), **reading, **settings)
+    if found.clips:
+        both = evaluate({**motions, **found.clips}, progress=phase("after"), **reading, **settings)
         after = renamed(both, completed_name(dataset))
-    if left_out := sorted(set(after.failed) & set(added)):
+    if left_out := sorted(set(after.failed) & set(found.clips)):
         raise DatasetError(
             f"{left_out[0]} cannot be evaluated beside the dataset's own clips: {after.failed[left_out[0]]}"
         )
@@ -109,15 +112,35 @@ def complete_from(
         dataset,
         before,
         after,
-        added,
+        found.clips,
         {},
         (),
         source=source,
-        choices=choices,
-        refused=refused,
-        considered=len(set(others) - set(refused)) if holes(before) else 0,
-        held_before=held,
+        choices=found.choices,
+        refused=found.refused,
+        considered=len(set(others) - set(found.refused)) if holes(before) else 0,
+        held_before=found.held,
+        noticed=tuple(f"{source}: {note}" for note in found.notes),
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """What was chosen.
+
+    Attributes:
+        held: how many trials held before the first choice.
+        choices: in their order.
+        clips: those that were chosen, by name.
+        refused: clips that cannot be used, and why.
+        notes: what was noticed about the other folder, in sentences.
+    """
+
+    held: int
+    choices: tuple[Choice, ...] = ()
+    clips: Mapping[str, Motion] = field(default_factory=dict)
+    refused: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
 
 class _Hunt:
@@ -133,49 +156,54 @@ class _Hunt:
     ) -> None:
         assert before.simulation is not None
         self.before, self.simulation = before, before.simulation
-        self.motions = {name: motion for name, motion in motions.items() if name not in before.failed}
-        self.reading, self.threads, self.tell = reading, threads, tell
-
-    @property
-    def whole(self) -> Database:
-        """The dataset by itself."""
-        return self.simulation.database
+        usable = {name: motion for name, motion in motions.items() if name not in before.failed}
+        self.kind = Kind(before.simulation.database, usable, reading)
+        self.threads, self.tell = threads, tell
 
     def found(
-        self, others: Mapping[str, Motion], fill: Filler | None, lay: bool, at_most: float | None
-    ) -> tuple[tuple[Choice, ...], dict[str, str], dict[str, Motion], int]:
-        """The choices, what was refused and why, the chosen clips, and how many trials held before."""
+        self,
+        others: Mapping[str, Motion],
+        source: str,
+        fill: Filler | None,
+        lay: bool,
+        at_most: float | None,
+    ) -> _Found:
+        """Choose among other clips."""
         tracking, trials = _steady(self.simulation)
         log = self.simulation.logs[tracking]
         held = shortfalls(log)[trials] == 0
-        failing = trials[~held]
-        if not len(failing):
-            return (), {}, {}, int(held.sum())
-        like = next(iter(self.motions.values()))
-        usable, laid, refused = on_skeleton(others, self.whole.skeleton, _layer(like) if lay else None)
-        made = self._made(fill, like)
-        if not usable and not made:
-            return (), refused, {}, int(held.sum())
-        asked = on_plan(self.whole, log, failing, self.threads)
-        self.tell("ranking", 0, 1)
-        rows = self._rows({**usable, **made}, laid, set(made), refused)
-        short = {name: part for name, part in rows.items() if at_most is None or part.seconds <= at_most}
-        listed = shortlisted(short, asked, self.threads)
-        self.tell("ranking", 1, 1)
+        if held.all():
+            return _Found(int(held.sum()))
+        offer = offer_of(self.kind, others, source, lay=lay, make=lambda like: self._made(fill, like))
+        listed = self._listed(offer, log, trials[~held], at_most)
         if not listed:
-            return (), refused, {}, int(held.sum())
+            return _Found(int(held.sum()), refused=offer.refused, notes=offer.notes)
         named: dict[str, Candidate] = {}
         for candidate in listed:
-            named[_unused(candidate.name, {*self.motions, *named})] = candidate
-        clips = {
-            name: candidate.of({**usable, **made}[candidate.source]) for name, candidate in named.items()
-        }
-        contest = self._contest(clips, named, refused, tracking, trials)
+            named[_unused(candidate.name, {*self.kind.motions, *named})] = candidate
+        clips = {name: offer.clip(candidate) for name, candidate in named.items()}
+        contest = self._contest(clips, named, offer.refused, tracking, trials)
         choices, before = choose(
             contest, at_most=at_most, progress=lambda done, of: self.tell("choosing", done, of)
         )
         self.tell("choosing", len(named), len(named))
-        return choices, refused, {choice.name: clips[choice.name] for choice in choices}, before
+        chosen = {choice.name: clips[choice.name] for choice in choices}
+        return _Found(before, choices, chosen, offer.refused, offer.notes)
+
+    def _listed(
+        self, offer: Offer, log: TrialLog, failing: NDArray[np.intp], at_most: float | None
+    ) -> list[Candidate]:
+        """The candidates that are worth trying, best first."""
+        if not offer.rows:
+            return []
+        self.tell("ranking", 0, 1)
+        asked = on_plan(self.kind.whole, log, failing, self.threads)
+        short = {
+            name: part for name, part in offer.rows.items() if at_most is None or part.seconds <= at_most
+        }
+        listed = shortlisted(short, asked, self.threads)
+        self.tell("ranking", 1, 1)
+        return listed
 
     def _made(self, fill: Filler | None, like: Motion) -> dict[str, Motion]:
         made: dict[str, Motion] = {}
@@ -189,51 +217,18 @@ class _Hunt:
         self.tell("making clips", len(wanted), len(wanted))
         return made
 
-    def _build(self, motions: Mapping[str, Motion], mirror: bool) -> Database:
-        return Database.build(
-            motions,
-            mirror=mirror,
-            schema=self.whole.schema,
-            rate=self.whole.rate,
-            normalization=self.whole.normalization,
-            **self.reading,
-        )
-
-    def _rows(
-        self, clips: Mapping[str, Motion], laid: set[str], made: set[str], refused: dict[str, str]
-    ) -> dict[Candidate, Rows]:
-        """The frames of every candidate; clips that cannot be used join ``refused``."""
-        try:
-            database = self._build(clips, mirror=True)
-        except DatasetError:
-            database = self._build(clips, mirror=False)
-        refused.update(database.excluded)
-        copies = bool(self.whole.mirrored.any())
-        number = {name: clip for clip, name in enumerate(database.clip_names)}
-        rows: dict[Candidate, Rows] = {}
-        for name in (name for name in clips if name in number):
-            image = number.get(f"{name} (mirrored)")
-            for candidate in (
-                (Candidate(name, made=True),)
-                if name in made
-                else variants(name, mirror=image is not None and not copies, laid=name in laid)
-            ):
-                of = [image] if candidate.mirrored else [number[name], *([image] if copies else [])]
-                parts = [rows_of(database, clip, candidate.factor) for clip in of if clip is not None]
-                rows[candidate] = joined(parts)
-        return rows
-
     def _contest(
         self,
         clips: Mapping[str, Motion],
         named: Mapping[str, Candidate],
         refused: dict[str, str],
         tracking: Tracking,
-        trials: np.ndarray[Any, np.dtype[np.intp]],
+        trials: NDArray[np.intp],
     ) -> Contest:
         """The dataset and the candidates that are tried, side by side."""
         self.tell("preparing candidates", 0, 1)
-        database = self._build({**self.motions, **clips}, mirror=bool(self.whole.mirrored.any()))
+        beside = {**self.kind.motions, **clips}
+        database = self.kind.build(beside, mirror=bool(self.kind.whole.mirrored.any()))
         refused.update({name: why for name, why in database.excluded.items() if name in clips})
         self.tell("preparing candidates", 1, 1)
         there = set(database.clip_names)
@@ -248,17 +243,11 @@ class _Hunt:
         )
 
 
-def _steady(simulation: Simulation) -> tuple[Tracking, np.ndarray[Any, np.dtype[np.intp]]]:
+def _steady(simulation: Simulation) -> tuple[Tracking, NDArray[np.intp]]:
     """The trials that tell the holes: at one speed where there are such, timed where there are such."""
     tracking: Tracking = "time" if "time" in simulation.logs else next(iter(simulation.logs))
     steady = np.flatnonzero([trial.scenario == "constant" for trial in simulation.trials])
     return tracking, steady if len(steady) else np.arange(len(simulation.trials))
-
-
-def _layer(like: Motion) -> Callable[[Motion], Motion]:
-    from gmr.skinning.driving.other_skeleton import retarget
-
-    return lambda motion: retarget(motion, like).motion
 
 
 def _unused(name: str, taken: Any) -> str:

@@ -55,13 +55,18 @@ def sentences(of: Completion) -> tuple[str, ...]:
 
 def change_sentence(of: Completion) -> str:
     """What the map of the changes shows."""
+    if not of.added:
+        return "Nothing was added, so no trial has changed."
     change = _change(of)
     better, worse = int((change <= -_MATTERS).sum()), int((change >= _MATTERS).sum())
-    best = int(np.nanargmin(change)) if np.isfinite(change).any() else 0
+    closer = count(better, "trial comes", "trials come") if better else "No trial comes"
+    farther = count(worse, "strays", "stray") if worse else "none strays"
+    told = f"{closer} closer to the plan by {metres(_MATTERS)} or more, {farther} farther from it by as much"
+    if not better:
+        return f"{told}."
+    best = int(np.nanargmin(change))
     return (
-        f"{count(better, 'trial comes', 'trials come')} closer to the plan by {metres(_MATTERS)} or more, "
-        f"{count(worse, 'strays', 'stray')} farther from it by as much; "
-        f"the greatest gain is at {_asked(of, best)}, from {metres(_offset(of, 'before')[best])} to "
+        f"{told}; the greatest gain is at {_asked(of, best)}, from {metres(_offset(of, 'before')[best])} to "
         f"{metres(_offset(of, 'after')[best])}."
     )
 

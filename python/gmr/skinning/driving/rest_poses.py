@@ -109,7 +109,7 @@ def motion_rest(motion: Motion, begins: Mapping[str, int], up: str, frame: int |
     raise GmrError(
         f"{motion.name or 'the motion'} has no rest pose: where nothing is turned, no body stands ({wrong}), "
         "so it cannot be laid on the character's. Say in which frame it stands upright, the nearer to a "
-        "T-pose or to the character's rest the better: rest=0 in Python, --rest 0 on the command line"
+        "T-pose or to the character's rest the better: rest=0 in Python, gmr skin --rest 0"
     )
 
 
