@@ -130,6 +130,18 @@ def test_a_dataset_with_mirrored_copies_is_offered_none(
     assert found.trials["held_after"].sum() == 3
 
 
+def test_a_clip_that_the_dataset_holds_already_changes_nothing(
+    straight: dict[str, gmr.Motion], others: dict[str, gmr.Motion], completed: Completion
+) -> None:
+    # Of two files of one motion the shorter name stands; here the dataset's own are meant.
+    again = {"a.bvh": straight["straight.bvh"], "b.bvh": straight["faster.bvh"][:]}
+    found = complete_from(
+        straight, {**again, **others}, source="archive", dataset="two", speeds=SPEEDS, turn_rates_deg=TURNS
+    )
+    assert [choice.name for choice in found.choices] == [choice.name for choice in completed.choices]
+    np.testing.assert_array_equal(found.trials["held_after"], completed.trials["held_after"])
+
+
 def test_a_dataset_without_holes_is_left_alone(straight: dict[str, gmr.Motion]) -> None:
     found = complete_from(straight, {"more.bvh": walker(4, 1.2)}, speeds=(1.2,), turn_rates_deg=(0.0,))
     assert found.after is found.before

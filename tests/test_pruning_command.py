@@ -183,7 +183,9 @@ def test_json_has_the_curve_and_the_importance(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert run(folder, *SMALL, "--prune", "lossless", "--no-report", "--json", "--quiet") == 0
-    found = json.loads(capsys.readouterr().out)["pruned"]
+    told = json.loads(capsys.readouterr().out)
+    assert told["duplicates"] == {"twin.bvh": "a.bvh"}
+    found = told["pruned"]
     assert found["identical"] is True
     assert found["runs"] == {
         name: score

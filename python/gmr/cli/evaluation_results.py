@@ -82,4 +82,5 @@ def _described(found: Evaluation) -> dict[str, Any]:
         "trials": plain_rows(found.measured.trials),
         "notes": found.notes,
         "failed": dict(found.failed),
+        "duplicates": {} if found.simulation is None else dict(found.simulation.database.duplicates),
     }
