@@ -214,8 +214,34 @@ def test_the_map_of_the_verdict_agrees_with_the_verdict(evaluation: Evaluation) 
     drawn = holds_map(evaluation, "constant", "time").data["trials"]
     grid = Grid.of(evaluation.measured.trials, evaluation.measured.coverage, Limits())
     assert (drawn["outcome"] == "as asked").sum() == grid.held.sum()
-    worst = int(np.argmax(drawn["offset_mean"]))
-    assert drawn["outcome"][worst] == "strays from the path"
+    trials = evaluation.measured.trials
+    speed = np.abs(trials["speed_error_share"]) / Limits().speed
+    turn = np.abs(trials["turn_rate_error_deg"]) / Limits().turn_rate_deg
+    strays = drawn["outcome"] == "strays from the path"
+    assert (strays == ((trials["offset_mean"] > Limits().offset) & (speed <= 1) & (turn <= 1))).all()
+    assert ((drawn["outcome"] == "wrong speed") == ((speed > 1) & (speed >= turn))).all()
+    assert ((drawn["outcome"] == "wrong turn rate") == ((turn > 1) & (turn > speed))).all()
+
+
+def test_the_map_of_the_verdict_says_by_what_the_others_fail(evaluation: Evaluation) -> None:
+    trials = evaluation.measured.trials
+    off = {name: np.zeros(81) for name in ("speed_error_share", "turn_rate_error_deg", "offset_mean")}
+
+    def said(**failing: tuple[int, float]) -> str:
+        columns = dict(off)
+        for name, (first, value) in failing.items():
+            columns[name] = np.where(np.arange(81) < first, value, 0.0)
+        changed = Table({name: columns.get(name, trials[name]) for name in trials.column_names})
+        measured = replace(evaluation.measured, trials=changed)
+        return holds_map(replace(evaluation, measured=measured), "constant", "time").sentence
+
+    assert said().endswith("No trial fails.")
+    assert said(offset_mean=(1, 2.0)).endswith("The other one fails by straying alone.")
+    assert said(speed_error_share=(9, -0.5)).endswith("The other 9 fail by speed.")
+    told = said(speed_error_share=(9, -0.5), turn_rate_error_deg=(4, 80.0), offset_mean=(12, 2.0))
+    assert told.endswith(
+        "The other 12 fail: 5 by speed, 4 by turn rate (whichever is farther off) and 3 by straying alone."
+    )
 
 
 def test_classes_sort_values_at_their_borders() -> None:
