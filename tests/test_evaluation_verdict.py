@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pytest
 
+from gmr.evaluation.clip_sentences import clip_sentences
 from gmr.evaluation.coverage import coverage_table
 from gmr.evaluation.result import Verdict
 from gmr.evaluation.scenario import Trial, constant_trials
@@ -129,6 +130,9 @@ def test_clips_that_hold_nothing_of_the_grid_are_told_by_what_they_do_and_how_mu
         "3 clips of 30 (17 seconds, 13% of the material) are no walking or running that the grid asks for"
     )
     assert "(play/stand.bvh, dance/back.bvh and play/back.bvh)" in told
+    assert told.endswith(
+        "Clips that walk or run so for longer are not counted here, whatever else they hold."
+    )
     assert "fast.bvh" not in told
     assert "no walking or running that the grid asks for" not in str(judged({**walks, **runs}))
     del others["dance/spin.bvh"]
@@ -136,7 +140,7 @@ def test_clips_that_hold_nothing_of_the_grid_are_told_by_what_they_do_and_how_mu
     alone = judged({**EVERYTHING, "stand.bvh": Arc(3.0, 0.01)}, grid=GRID[:1])
     (told,) = [sentence for sentence in alone.sentences if "that the grid asks for" in sentence]
     assert told.startswith("1 clip of 26 (3 seconds, 3% of the material) is no walking")
-    assert told.endswith("(stand.bvh). Such clips are never shown.")
+    assert "(stand.bvh). It is never shown. Clips that" in told
 
 
 def test_feet_that_stand_still_slide_by_nothing() -> None:
@@ -329,3 +333,32 @@ def test_clips_are_named_without_the_folder_that_all_are_in() -> None:
         "2 clips of 3 are never played (9 seconds, 18% of the material): walk/b.bvh and run/a.bvh."
         in sentences
     )
+
+
+def shares_by_folder(played: dict[str, float]) -> list[str]:
+    clips = Table(
+        {
+            "clip": np.array(list(played), object),
+            "mirrored": np.array([name.endswith("(mirrored)") for name in played]),
+            "seconds": np.ones(len(played)),
+            "played_share": np.array(list(played.values())),
+        }
+    )
+    frames = {"frame": np.zeros(len(played), int), "count": np.ones(len(played), int)}
+    said = clip_sentences(clips, Table({"clip": clips["clip"], **frames, "seconds": clips["seconds"]}))
+    return [sentence for sentence in said if sentence.startswith("By sub-folder")]
+
+
+def test_where_there_are_sub_folders_their_shares_of_the_playing_are_told() -> None:
+    played = {"set/climb/a.bvh": 0.15, "set/climb/b.bvh": 0.1, "set/climb/b.bvh (mirrored)": 0.15}
+    played |= {"set/walk/a.bvh": 0.1, "set/walk/slow/a.bvh": 0.2, "set/a.bvh": 0.1}
+    assert shares_by_folder(played) == [
+        "By sub-folder: 40% of the time is played from climb, 30% from walk and 10% from clips in none."
+    ]
+    played |= {f"set/{folder}/a.bvh": 0.05 for folder in ("dance", "play", "run", "stairs")}
+    assert shares_by_folder(played | {"set/idle/a.bvh": 0.0}) == [
+        "By sub-folder: 40% of the time is played from climb, 30% from walk, 10% from clips in none and 20% "
+        "from the other 5."
+    ]
+    assert shares_by_folder({"set/a.bvh": 0.5, "set/b.bvh": 0.5}) == []
+    assert shares_by_folder({"a/take.bvh": 0.5, "b/take.bvh": 0.5}) == []

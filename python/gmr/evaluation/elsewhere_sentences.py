@@ -51,7 +51,8 @@ def elsewhere_sentences(grid: Grid, coverage: Table, clips: Table) -> Iterator[s
         "running that the grid asks for: each goes forward at the grid's speeds and turn rates for less than "
         f"{duration(grid.limits.covered)}, and at any speed for less than half of its time; the rest is "
         f"standing, turning on the spot, and going sideways or backwards ({_where(told, longest)}). "
-        f"{_played(told, share, others)}"
+        f"{_played(told, share, others)} Clips that walk or run so for longer are not counted here, whatever "
+        "else they hold."
     )
 
 
@@ -85,12 +86,15 @@ def _where(names: Sequence[str], chosen: Sequence[int]) -> str:
 
 def _played(names: Sequence[str], share: NDArray[np.float64], others: NDArray[np.bool_]) -> str:
     """How much of the time they are shown all the same, and the most played one."""
-    total, most = float(share[others].sum()), int(np.argmax(np.where(others, share, -1.0)))
+    total, most, many = (
+        float(share[others].sum()),
+        int(np.argmax(np.where(others, share, -1.0))),
+        int(others.sum()),
+    )
+    who = "It is" if many == 1 else f"These {many} are"
     if total == 0:
-        return "Such clips are never shown."
+        return f"{who} never shown."
     alone = f", {names[most]} alone for {percent(float(share[most]))}"
     return (
-        f"Such clips are shown for {percent(total)} of the time"
-        f"{alone if share[most] >= ALONE and others.sum() > 1 else ''}; what the others do by themselves, an "
-        "evaluation without them tells."
+        f"{who} shown for {percent(total)} of the time{alone if share[most] >= ALONE and many > 1 else ''}."
     )
