@@ -119,6 +119,21 @@ def test_scatter_draws_every_window_until_they_are_too_many(evaluation: Evaluati
     assert "One window in 4" in many.sentence
 
 
+def test_shares_of_the_motion_are_those_of_its_time(evaluation: Evaluation) -> None:
+    windows = evaluation.measured.coverage
+    turns = np.arange(100) < 90
+    columns = {
+        "turn_rate_deg": np.where(turns, -30.0, 5.0),
+        "speed": np.where(turns, 1.0, 2.0),
+        "weight": np.where(turns, 0.5, 5.5),
+    }
+    one = without(evaluation, coverage=Table({**dict(windows.take(np.arange(100))), **columns}))
+    assert "45% of it turns faster than 25 degrees/s, 0% faster than 75" in coverage_scatter(one).sentence
+    assert "lies between 1.0 and 2.0 m/s" in coverage_scatter(one).sentence
+    calm = without(one, coverage=Table({**dict(one.measured.coverage), "weight": np.ones(100)}))
+    assert "45% of fake and 90% of fake turn faster" in compared_coverage([one, calm]).sentence
+
+
 def test_a_few_spins_do_not_stretch_the_scatter_and_are_counted(evaluation: Evaluation) -> None:
     windows = evaluation.measured.coverage
     turn = np.clip(windows["turn_rate_deg"], -90.0, 90.0)
