@@ -19,7 +19,7 @@ from gmr.errors import MissingExtraError
 from gmr.evaluation import Evaluation, Table, Tables
 from gmr.evaluation.figures import figures, svg
 from gmr.evaluation.figures.classes import Classes, two_sided
-from gmr.evaluation.figures.clip_circles import clip_circles
+from gmr.evaluation.figures.clip_circles import clip_circles, jumps_with
 from gmr.evaluation.figures.clip_usage import clip_usage, never_played, recordings
 from gmr.evaluation.figures.compared_coverage import compared_coverage
 from gmr.evaluation.figures.coverage_density import coverage_density
@@ -223,6 +223,14 @@ def test_clip_circles_draw_no_more_lines_than_can_be_seen(evaluation: Evaluation
     assert 0 < len(lines) <= 400
     assert (np.abs(lines["x"]) <= 1.4).all()
     assert (np.abs(lines["y"]) <= 1.0).all()
+
+
+def test_clip_circles_say_with_how_many_clips_one_exchanges_jumps(evaluation: Evaluation) -> None:
+    assert jumps_with(11, 11) == "exchanges jumps with each of the other 11 clips"
+    assert jumps_with(3, 11) == "exchanges jumps with 3 of the other 11 clips"
+    assert jumps_with(1, 1) == "exchanges jumps with the other clip"
+    assert jumps_with(0, 0) == jumps_with(0, 5) == "jumps only within itself"
+    assert re.search(r" of the other \d+ clips\. Frames run", clip_circles(evaluation).sentence)
 
 
 def test_the_map_of_the_verdict_agrees_with_the_verdict(evaluation: Evaluation) -> None:
