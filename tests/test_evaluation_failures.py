@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import combinations_with_replacement
 
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from gmr.evaluation.failing_blocks import failing_blocks
 from gmr.evaluation.failure_sentences import failure_sentences
 from gmr.evaluation.regions import Grid, Limits
 from gmr.evaluation.words import beyond
@@ -123,9 +126,7 @@ def drawn(*rows: str) -> Grid:
 def told_of(grid: Grid) -> tuple[list[Told], int]:
     """The claims, and how many trials fail "here and there"."""
     sentences = list(failure_sentences(grid))
-    more = [
-        re.fullmatch(r"(\d+) more trials? fails? here and there on the grid\.", text) for text in sentences
-    ]
+    more = [re.fullmatch(r"(\d+) more trials? fails? here and there\.", text) for text in sentences]
     told = [Told.of(text) for text, found in zip(sentences, more, strict=True) if not found]
     return told, sum(int(found[1]) for found in more if found)
 
@@ -205,8 +206,9 @@ def assert_symptom(told: Told, grid: Grid, counted: NDArray[np.bool_]) -> None:
             assert missing.all()
             assert said is None
         else:
-            assert (int(said[1] or told.count) if said else 0) == missing.sum()
-    ends = re.search(r"in the median \(([\d.]+) to ([\d.]+) ", told.symptom)
+            often = 2 * missing.sum() >= told.count
+            assert (int(said[1] or told.count) if said else 0) == (missing.sum() if often else 0)
+    ends = re.search(r"in the median \(([\d.]+) to ([\d.]+)\)", told.symptom)
     if ends is not None and way in ("slow", "fast"):
         error = np.abs(grid.speed_error[counted])
         np.testing.assert_allclose([float(ends[1]), float(ends[2])], [error.min(), error.max()], rtol=0.06)
@@ -238,3 +240,39 @@ def test_a_distance_beyond_the_limit_is_printed_beyond_it() -> None:
     assert beyond(10.3, 10) == "10.3"
     assert beyond(17.2, 10) == "17"
     assert beyond(0.4, 0.5) == "0.4"
+
+
+def test_several_ways_to_fail_are_one_sentence_where_they_would_be_many() -> None:
+    grid = drawn(". .. . .. .", ". p. . .s .", ". s. . .p .", ". p. . .s .", ". s. . .p .")
+    told, more = told_of(grid)
+    assert [(each.side, each.ways, each.among) for each in told] == [
+        ("either way", {"slow": 4, "strays": 4}, 8)
+    ]
+    assert more == 0
+
+
+@settings(max_examples=60)
+@given(st.lists(st.lists(st.booleans(), min_size=7, max_size=7), min_size=1, max_size=5))
+def test_the_first_block_is_that_in_which_failing_trials_outnumber_the_others_by_most(
+    fails: list[list[bool]],
+) -> None:
+    failing = np.array(fails)
+    grid = grid_of(np.where(failing, "slow", "holds"), [25.0 * turn for turn in range(-3, 4)])
+    sums = [
+        (2 * failing[np.ix_(np.arange(low, high + 1), columns)].astype(int) - 1).sum()
+        for low, high in combinations_with_replacement(range(len(failing)), 2)
+        for columns in columns_of_blocks(grid.turn_rates_deg)
+    ]
+    blocks = failing_blocks(grid)
+    worths = [2 * len(block.cells) - block.spanned for block in blocks]
+    assert max(worths, default=0) == max(0, *sums)
+
+
+def columns_of_blocks(turns: NDArray[np.float64]) -> Iterator[NDArray[np.int64]]:
+    """The columns of straight lines, and of each span of turn rates to each side and to both."""
+    yield np.flatnonzero(turns == 0)
+    steep = np.unique(np.abs(turns[turns != 0]))
+    for low, high in combinations_with_replacement(steep.tolist(), 2):
+        within = (np.abs(turns) >= low) & (np.abs(turns) <= high)
+        for side in (turns > 0, turns < 0, turns != 0):
+            yield np.flatnonzero(within & side)

@@ -38,7 +38,7 @@ __all__ = [
 
 MOST_BLOCKS: Final = 3
 
-SMALLEST_SHARE: Final = 0.03
+SMALLEST_SHARE: Final = 0.05
 """Blocks with a smaller share of the trials are told only where there are no others."""
 
 STRAY: Final = "strays from its path"
@@ -50,7 +50,7 @@ TURNS_AWAY: Final = "turns all the same"
 """Where a straight line is asked for."""
 MIXED: Final = "fails in several ways"
 
-WORTH_MIXING: Final = 2
+WORTH_MIXING: Final = 1.75
 """Trials that fail in several ways are told as one block where it tells so many times what one way can."""
 
 _WAYS: Final = (TURNS_AWAY, TURNS_LITTLE, TURNS_MUCH, SLOW, FAST, STRAY)

@@ -34,7 +34,7 @@ def failure_sentences(grid: Grid) -> Iterator[str]:
     others = int((~grid.held).sum()) - sum(len(block.cells) for block in blocks)
     if others:
         verb = "fails" if others == 1 else "fail"
-        yield f"{count(others, 'more trial')} {verb} here and there on the grid."
+        yield f"{count(others, 'more trial')} {verb} here and there."
 
 
 def _movement(grid: Grid, block: Block) -> str:
@@ -70,8 +70,7 @@ def _clips_there(grid: Grid, block: Block) -> str:
         return total
     if empty == len(seconds):
         return f"only {total}"
-    few = f"less than {duration(grid.limits.covered)}"
-    return f"{total}, with {few} for {empty} of the {count(len(seconds), 'trial')}"
+    return f"{total}, under {duration(grid.limits.covered)} in {empty} of the trials"
 
 
 def capture_sentences(grid: Grid, regions: Sequence[Region], mirrored: bool) -> Iterator[str]:

@@ -66,17 +66,17 @@ def _missed_by(grid: Grid, cells: NDArray[np.int64], way: str) -> tuple[NDArray[
 
 def _typical(values: NDArray[np.float64], unit: str, limit: float, how: str) -> str:
     """The median, where the values differ with the lowest and the highest: "0.9 m/s too slowly in the median
-    (0.4 to 2.1 m/s)"."""
+    (0.4 to 2.1)"."""
     low, middle, high = (
         beyond(float(value), limit) for value in (values.min(), np.median(values), values.max())
     )
     typical = f"{middle} {unit} {how}"
-    return typical if low == high else f"{typical} in the median ({low} to {high} {unit})"
+    return typical if low == high else f"{typical} in the median ({low} to {high})"
 
 
 def _missed_too(block: Block, what: str, excess: NDArray[np.float64]) -> str:
-    """In how many trials the other of speed and turn rate is off, too."""
+    """In how many trials the other of speed and turn rate is off, too, if in at least half of them."""
     missed, among = int((excess[tuple(block.cells.T)] > 1).sum()), len(block.cells)
-    if not missed:
+    if 2 * missed < among:
         return ""
     return f", and misses its {what}{'' if missed == among else f' in {missed} of them'}, too"
