@@ -206,7 +206,7 @@ def assert_symptom(told: Told, grid: Grid, counted: NDArray[np.bool_]) -> None:
             assert missing.all()
             assert said is None
         else:
-            often = 2 * missing.sum() >= told.count
+            often = 10 * missing.sum() >= told.count
             assert (int(said[1] or told.count) if said else 0) == (missing.sum() if often else 0)
     ends = re.search(r"in the median \(([\d.]+) to ([\d.]+)\)", told.symptom)
     if ends is not None and way in ("slow", "fast"):

@@ -173,15 +173,12 @@ def _worthiest(worths: NDArray[np.int64]) -> tuple[int, slice, slice]:
     rows, columns = worths.shape
     summed = np.zeros((rows + 1, columns + 1), np.int64)
     summed[1:, 1:] = worths.cumsum(axis=0).cumsum(axis=1)
-    found = []
-    for first in range(columns):
-        for end in range(first + 1, columns + 1):
-            until = summed[:, end] - summed[:, first]
-            gains = until[1:] - np.minimum.accumulate(until[:-1])
-            last = int(np.argmax(gains))
-            start = int(np.argmin(until[: last + 1]))
-            found.append((int(gains[last]), slice(start, last + 1), slice(first, end)))
-    return max(found, key=lambda each: each[0])
+    first, end = np.triu_indices(columns + 1, k=1)
+    until = summed[:, end] - summed[:, first]
+    gains = until[1:] - np.minimum.accumulate(until[:-1], axis=0)
+    last, band = np.unravel_index(np.argmax(gains), gains.shape)
+    start = np.argmin(until[: last + 1, band])
+    return int(gains[last, band]), slice(int(start), int(last) + 1), slice(int(first[band]), int(end[band]))
 
 
 def _span(grid: Grid, cells: NDArray[np.int64]) -> NDArray[np.bool_]:

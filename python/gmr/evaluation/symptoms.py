@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,9 @@ from gmr.evaluation.regions import Grid
 from gmr.evaluation.words import beyond, listing
 
 __all__ = ["symptom"]
+
+SOME: Final = 0.1
+"""What else goes wrong is told where it does in this share of the trials."""
 
 
 def symptom(grid: Grid, block: Block) -> str:
@@ -75,8 +80,8 @@ def _typical(values: NDArray[np.float64], unit: str, limit: float, how: str) -> 
 
 
 def _missed_too(block: Block, what: str, excess: NDArray[np.float64]) -> str:
-    """In how many trials the other of speed and turn rate is off, too, if in at least half of them."""
+    """In how many trials the other of speed and turn rate is off, too, if in more than a few."""
     missed, among = int((excess[tuple(block.cells.T)] > 1).sum()), len(block.cells)
-    if 2 * missed < among:
+    if missed < SOME * among or not missed:
         return ""
     return f", and misses its {what}{'' if missed == among else f' in {missed} of them'}, too"
