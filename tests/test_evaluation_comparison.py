@@ -97,7 +97,7 @@ def test_the_words_name_what_all_and_what_only_one_can_do(made: Evaluation) -> N
     assert "Only B does 8 trials: 4 of them turning right by 25 to 100 degrees/s at 1 m/s" in said
     assert "All that the other can, B can too." in said
     assert "A does nothing that the other cannot." in said
-    assert "None does 64 trials" in said
+    assert "Neither does 64 trials" in said
     assert (
         "In the trials that both do, A and B keep equally close to their path: 10 cm off on average." in said
     )

@@ -434,3 +434,13 @@ def test_notes_speak_of_no_clip_that_is_left_out(data: Path) -> None:
     assert "side.bvh" not in str(database.notes)
     assert "used as they are" not in str(database.notes)
     assert any(note.startswith("2 of 2 clips begin with a T-pose") for note in database.notes)
+
+
+def test_the_t_pose_of_one_clip_is_told_of_one(data: Path) -> None:
+    walk = gmr.read(data / "cmu_07_01.bvh")
+    alone, first = (
+        Database.build(clips, schema=SHORT)
+        for clips in ({"a.bvh": walk}, {"a.bvh": walk, "b.bvh": walk[1:-1]})
+    )
+    assert any(note.startswith("The one clip begins with a T-pose") for note in alone.notes)
+    assert any(note.startswith("1 of 2 clips begins with a T-pose") for note in first.notes)

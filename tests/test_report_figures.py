@@ -19,7 +19,7 @@ from gmr.errors import MissingExtraError
 from gmr.evaluation import Evaluation, Table, Tables
 from gmr.evaluation.figures import figures, svg
 from gmr.evaluation.figures.classes import Classes, two_sided
-from gmr.evaluation.figures.clip_circles import clip_circles
+from gmr.evaluation.figures.clip_circles import clip_circles, jumps_with
 from gmr.evaluation.figures.clip_usage import clip_usage, never_played, recordings
 from gmr.evaluation.figures.compared_coverage import compared_coverage
 from gmr.evaluation.figures.coverage_density import coverage_density
@@ -119,6 +119,21 @@ def test_scatter_draws_every_window_until_they_are_too_many(evaluation: Evaluati
     assert "One window in 4" in many.sentence
 
 
+def test_shares_of_the_motion_are_those_of_its_time(evaluation: Evaluation) -> None:
+    windows = evaluation.measured.coverage
+    turns = np.arange(100) < 90
+    columns = {
+        "turn_rate_deg": np.where(turns, -30.0, 5.0),
+        "speed": np.where(turns, 1.0, 2.0),
+        "weight": np.where(turns, 0.5, 5.5),
+    }
+    one = without(evaluation, coverage=Table({**dict(windows.take(np.arange(100))), **columns}))
+    assert "45% of it turns faster than 25 degrees/s, 0% faster than 75" in coverage_scatter(one).sentence
+    assert "lies between 1.0 and 2.0 m/s" in coverage_scatter(one).sentence
+    calm = without(one, coverage=Table({**dict(one.measured.coverage), "weight": np.ones(100)}))
+    assert "45% of fake and 90% of fake turn faster" in compared_coverage([one, calm]).sentence
+
+
 def test_a_few_spins_do_not_stretch_the_scatter_and_are_counted(evaluation: Evaluation) -> None:
     windows = evaluation.measured.coverage
     turn = np.clip(windows["turn_rate_deg"], -90.0, 90.0)
@@ -210,12 +225,46 @@ def test_clip_circles_draw_no_more_lines_than_can_be_seen(evaluation: Evaluation
     assert (np.abs(lines["y"]) <= 1.0).all()
 
 
+def test_clip_circles_say_with_how_many_clips_one_exchanges_jumps(evaluation: Evaluation) -> None:
+    assert jumps_with(11, 11) == "exchanges jumps with each of the other 11 clips"
+    assert jumps_with(3, 11) == "exchanges jumps with 3 of the other 11 clips"
+    assert jumps_with(1, 1) == "exchanges jumps with the other clip"
+    assert jumps_with(0, 0) == jumps_with(0, 5) == "jumps only within itself"
+    assert re.search(r" of the other \d+ clips\. Frames run", clip_circles(evaluation).sentence)
+
+
 def test_the_map_of_the_verdict_agrees_with_the_verdict(evaluation: Evaluation) -> None:
     drawn = holds_map(evaluation, "constant", "time").data["trials"]
     grid = Grid.of(evaluation.measured.trials, evaluation.measured.coverage, Limits())
     assert (drawn["outcome"] == "as asked").sum() == grid.held.sum()
-    worst = int(np.argmax(drawn["offset_mean"]))
-    assert drawn["outcome"][worst] == "strays from the path"
+    trials = evaluation.measured.trials
+    speed = np.abs(trials["speed_error_share"]) / Limits().speed
+    turn = np.abs(trials["turn_rate_error_deg"]) / Limits().turn_rate_deg
+    strays = drawn["outcome"] == "strays from the path"
+    assert (strays == ((trials["offset_mean"] > Limits().offset) & (speed <= 1) & (turn <= 1))).all()
+    assert ((drawn["outcome"] == "wrong speed") == ((speed > 1) & (speed >= turn))).all()
+    assert ((drawn["outcome"] == "wrong turn rate") == ((turn > 1) & (turn > speed))).all()
+
+
+def test_the_map_of_the_verdict_says_by_what_the_others_fail(evaluation: Evaluation) -> None:
+    trials = evaluation.measured.trials
+    off = {name: np.zeros(81) for name in ("speed_error_share", "turn_rate_error_deg", "offset_mean")}
+
+    def said(**failing: tuple[int, float]) -> str:
+        columns = dict(off)
+        for name, (first, value) in failing.items():
+            columns[name] = np.where(np.arange(81) < first, value, 0.0)
+        changed = Table({name: columns.get(name, trials[name]) for name in trials.column_names})
+        measured = replace(evaluation.measured, trials=changed)
+        return holds_map(replace(evaluation, measured=measured), "constant", "time").sentence
+
+    assert said().endswith("No trial fails.")
+    assert said(offset_mean=(1, 2.0)).endswith("The other one fails by straying alone.")
+    assert said(speed_error_share=(9, -0.5)).endswith("The other 9 fail by speed.")
+    told = said(speed_error_share=(9, -0.5), turn_rate_error_deg=(4, 80.0), offset_mean=(12, 2.0))
+    assert told.endswith(
+        "The other 12 fail: 5 by speed, 4 by turn rate (whichever is farther off) and 3 by straying alone."
+    )
 
 
 def test_classes_sort_values_at_their_borders() -> None:

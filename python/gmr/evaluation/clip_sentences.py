@@ -57,9 +57,11 @@ def below_their_common_folder(names: list[str]) -> list[str]:
 
 
 def clip_sentences(clips: Table, usage: Table) -> Iterator[str]:
-    """Say which clips carry the trials, which are never played, and how many of the frames are."""
+    """Say which clips and sub-folders carry the trials, which clips are never played, and how many frames are
+    shown."""
     together = _Clips.of(clips)
     yield _carrying(together)
+    yield from _by_folder(together)
     yield _never_played(together)
     yield f"Of all frames, {percent(float(np.mean(plays(usage)['count'] > 0)))} are shown at least once."
 
@@ -78,6 +80,28 @@ def _carrying(clips: _Clips) -> str:
         return f"A single clip of {len(clips.names)}, {clips.names[0]}, is played for {share} of the time."
     named = f", led by {listing(led_by)}" if carrying > MOST_NAMES else f": {listing(led_by[:carrying])}"
     return f"Half of the time is played from {carrying} of {len(clips.names)} clips{named}."
+
+
+def _by_folder(clips: _Clips) -> Iterator[str]:
+    """The shares of the sub-folders, where there are some with several clips; the largest first."""
+    share: dict[str, float] = {}
+    for name, played in zip(clips.names, clips.share.tolist(), strict=True):
+        folder = name.partition("/")[0] if "/" in name else ""
+        share[folder] = share.get(folder, 0.0) + played
+    if not 1 < len(share) < len(clips.names):
+        return
+    first, *others = sorted(share, key=lambda folder: (-share[folder], folder))
+    told, rest = others[: MOST_NAMES - 1], others[MOST_NAMES - 1 :]
+    parts = [f"{percent(share[first])} of the time is played from {_in_folder(first)}"]
+    parts += [f"{percent(share[folder])} from {_in_folder(folder)}" for folder in told]
+    if rest:
+        remaining = percent(sum(share[folder] for folder in rest))
+        parts.append(f"{remaining} from the other {len(rest) if len(rest) > 1 else 'one'}")
+    yield f"By sub-folder: {listing(parts)}."
+
+
+def _in_folder(folder: str) -> str:
+    return folder or "clips in none"
 
 
 def _never_played(clips: _Clips) -> str:

@@ -97,7 +97,9 @@ def _none(grid: Grid, held: NDArray[np.bool_]) -> str:
     number = int(missing.sum())
     if number == 0:
         return "Every trial is done by one of them."
-    return f"None does {count(number, 'trial')}: {_largest(grid, missing)}."
+    return (
+        f"{'Neither' if len(held) == 2 else 'None'} does {count(number, 'trial')}: {_largest(grid, missing)}."
+    )
 
 
 def _largest(grid: Grid, cells: NDArray[np.bool_]) -> str:

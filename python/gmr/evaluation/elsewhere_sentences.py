@@ -43,15 +43,17 @@ def elsewhere_sentences(grid: Grid, coverage: Table, clips: Table) -> Iterator[s
     told = below_their_common_folder(names.tolist())
     longest = [int(place) for place in np.argsort(-seconds, kind="stable") if others[place]]
     lasting = float(seconds[others].sum())
-    clips_told = count(len(longest), "clip")
     part = percent(lasting / float(seconds.sum()))
-    verb = "is" if len(longest) == 1 else "are"
+    one = len(longest) == 1
+    do, who = (
+        ("stands, turns on the spot or goes", "it") if one else ("stand, turn on the spot or go", "each")
+    )
     yield (
-        f"{clips_told} of {len(names)} ({duration(lasting)}, {part} of the material) {verb} no walking or "
-        "running that the grid asks for: each goes forward at the grid's speeds and turn rates for less than "
-        f"{duration(grid.limits.covered)}, and at any speed for less than half of its time; the rest is "
-        f"standing, turning on the spot, and going sideways or backwards ({_where(told, longest)}). "
-        f"{_played(told, share, others)}"
+        f"{count(len(longest), 'clip')} of {len(names)} ({duration(lasting)}, {part} of the material) mostly "
+        f"{do} sideways or backwards ({_where(told, longest)}): {who} goes forward for less than half of its "
+        f"time, and for less than {duration(grid.limits.covered)} at the speeds and turn rates of the grid. "
+        f"{_played(told, share, others)}; clips that go forward for longer are not counted here, whatever "
+        "else they hold."
     )
 
 
@@ -84,13 +86,15 @@ def _where(names: Sequence[str], chosen: Sequence[int]) -> str:
 
 
 def _played(names: Sequence[str], share: NDArray[np.float64], others: NDArray[np.bool_]) -> str:
-    """How much of the time they are shown all the same, and the most played one."""
-    total, most = float(share[others].sum()), int(np.argmax(np.where(others, share, -1.0)))
-    if total == 0:
-        return "Such clips are never shown."
-    alone = f", {names[most]} alone for {percent(float(share[most]))}"
-    return (
-        f"Such clips are shown for {percent(total)} of the time"
-        f"{alone if share[most] >= ALONE and others.sum() > 1 else ''}; what the others do by themselves, an "
-        "evaluation without them tells."
+    """How much of the time they are shown all the same, and of many the most played one."""
+    total, most, many = (
+        float(share[others].sum()),
+        int(np.argmax(np.where(others, share, -1.0))),
+        others.sum(),
     )
+    who = "It is" if many == 1 else f"These {many} are"
+    if total == 0:
+        return f"{who} never shown"
+    tell_most = many > MOST_NAMES and share[most] >= ALONE
+    alone = f", {names[most]} alone for {percent(float(share[most]))}" if tell_most else ""
+    return f"{who} shown for {percent(total)} of the time{alone}"

@@ -16,7 +16,8 @@ from gmr.table import Table
 
 __all__ = [
     *("EITHER", "LEFT", "LEFT_ONLY", "RIGHT", "RIGHT_ONLY", "STRAIGHT"),
-    *("Grid", "Limits", "Rectangle", "Region", "failures", "held_rectangle", "judged"),
+    *("HOLDS", "MISSES_SPEED", "MISSES_TURN_RATE", "STRAYS"),
+    *("Grid", "Limits", "Rectangle", "Region", "failures", "held_rectangle", "judged", "mirror_columns"),
 ]
 
 STRAIGHT: Final = "straight"
@@ -25,6 +26,11 @@ LEFT: Final = "left"
 RIGHT: Final = "right"
 LEFT_ONLY: Final = "left, though not right,"
 RIGHT_ONLY: Final = "right, though not left,"
+
+HOLDS: Final = 0
+STRAYS: Final = 1
+MISSES_SPEED: Final = 2
+MISSES_TURN_RATE: Final = 3
 
 FORWARD_SHARE: Final = 0.7
 """A window goes forward when this much of its speed is along the facing direction (within 45 degrees)."""
@@ -110,6 +116,20 @@ class Grid:
         return cls(
             speeds, turn_rates, offset, speed_error, share, turn_rate_error, held, seconds, limits, timed
         )
+
+    @property
+    def outcomes(self) -> NDArray[np.int64]:
+        """(V, W) HOLDS, or what a trial fails by: MISSES_SPEED or MISSES_TURN_RATE, whichever is off by more
+        of its limit, and STRAYS only where it keeps both, for who misses them strays for that reason."""
+        speed, turn = self.excess
+        missed = np.where(speed >= turn, MISSES_SPEED, MISSES_TURN_RATE)
+        return np.where(self.held, HOLDS, np.where(np.maximum(speed, turn) > 1, missed, STRAYS))
+
+    @property
+    def excess(self) -> NDArray[np.float64]:
+        """(2, V, W) the errors of speed and turn rate as multiples of their limits."""
+        speed, turn = np.abs(self.speed_error_share), np.abs(self.turn_rate_error_deg)
+        return np.stack([speed / self.limits.speed, turn / self.limits.turn_rate_deg])
 
     @property
     def borders(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -210,7 +230,7 @@ class Region:
 def failures(grid: Grid) -> list[Region]:
     """All failing trials in regions, the largest first."""
     failed = ~grid.held
-    mirrored = _mirror_columns(grid.turn_rates_deg)
+    mirrored = mirror_columns(grid.turn_rates_deg)
     asked = mirrored >= 0
     also = asked & failed[:, mirrored]
     left, right = failed & (grid.turn_rates_deg > 0), failed & (grid.turn_rates_deg < 0)
@@ -230,7 +250,7 @@ def failures(grid: Grid) -> list[Region]:
     return sorted(regions, key=lambda region: -len(region.cells))
 
 
-def _mirror_columns(turn_rates: NDArray[np.float64]) -> NDArray[np.int64]:
+def mirror_columns(turn_rates: NDArray[np.float64]) -> NDArray[np.int64]:
     """(W,) index of the opposite turn rate, -1 where the grid has none."""
     place = np.minimum(np.searchsorted(turn_rates, -turn_rates), len(turn_rates) - 1)
     return np.where(turn_rates[place] == -turn_rates, place, -1)

@@ -67,7 +67,7 @@ def verdict(
             what_counts(grid),
             *_straight_sentences(grid),
             *_bridged_turns(grid),
-            *failure_sentences(grid, regions),
+            *failure_sentences(grid),
             *scenario_sentences(trials, coverage, segments, grid.limits),
             *path_sentences(trials, coverage, grid.limits),
             *seen_sentences(trials),

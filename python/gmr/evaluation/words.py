@@ -8,6 +8,7 @@ from typing import Final
 __all__ = [
     "GAITS",
     "STANDS",
+    "beyond",
     "circles",
     "count",
     "duration",
@@ -53,6 +54,16 @@ def number(value: float) -> str:
     if abs(value) >= 10:
         return f"{value:.0f}"
     return f"{float(f'{value:.2g}'):.10f}".rstrip("0").rstrip(".")
+
+
+def beyond(value: float, limit: float) -> str:
+    """A number that is larger than a limit, with as many digits as show it: 0.501 beyond 0.5 as "0.501"."""
+    told = number(value)
+    digits = 2
+    while value > limit and not float(told) > limit and digits < 9:
+        digits += 1
+        told = f"{float(f'{value:.{digits}g}'):.10f}".rstrip("0").rstrip(".")
+    return told
 
 
 def percent(share: float) -> str:

@@ -206,10 +206,10 @@ def _without_tposes(motions: dict[str, Motion]) -> tuple[dict[str, Motion], dict
 def _tpose_notes(motions: Mapping[str, Motion], skipped: Mapping[str, int]) -> Iterator[str]:
     begun = [name for name in skipped if name in motions]
     if begun:
-        verb = "begins" if len(motions) == 1 else "begin"
+        clips = "The one clip" if len(motions) == 1 else f"{len(begun)} of {len(motions)} clips"
         yield (
-            f"{len(begun)} of {len(motions)} clips {verb} with a T-pose that a converter added (whole-number "
-            f"angles, then a jump of the whole body); it was left out ({quoted(begun, 3)})."
+            f"{clips} {'begins' if len(begun) == 1 else 'begin'} with a T-pose that a converter added "
+            f"(whole-number angles, then a jump of the whole body); it was left out ({quoted(begun, 3)})."
         )
 
 

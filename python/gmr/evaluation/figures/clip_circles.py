@@ -18,7 +18,7 @@ from gmr.evaluation.words import count, percent
 from gmr.pages.figure import Figure
 from gmr.table import Table
 
-__all__ = ["clip_circles"]
+__all__ = ["clip_circles", "jumps_with"]
 
 _MOST_CLIPS: Final = 12
 _DOTS: Final = 60
@@ -153,11 +153,21 @@ def _sentence(names: list[str], transitions: Table, lines: Table, joined: NDArra
     partners = others.sum(axis=1)
     hub = int(np.argmax(partners))
     share = percent(int(lines["count"].sum()) / total)
+    with_whom = jumps_with(int(partners[hub]), len(names) - 1)
     return (
         f"Drawn are the {count(len(lines), 'strongest path')}, {share} of the jumps. {names[hub]} "
-        f"(number {hub + 1}) exchanges jumps with {int(partners[hub])} of the other {len(names) - 1} clips. "
+        f"(number {hub + 1}) {with_whom}. "
         f"Frames run clockwise from the top of each circle; a larger dot is played more."
     )
+
+
+def jumps_with(partners: int, others: int) -> str:
+    """With how many of the other clips the one exchanges jumps that does so with most."""
+    if not partners:
+        return "jumps only within itself"
+    if others == 1:
+        return "exchanges jumps with the other clip"
+    return f"exchanges jumps with {'each' if partners == others else partners} of the other {others} clips"
 
 
 def _chart() -> dict[str, Any]:

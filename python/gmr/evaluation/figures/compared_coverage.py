@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from gmr.evaluation.figures.axes import at_the_edge, point_axes, widest_turn
+from gmr.evaluation.figures.time_shares import turning_share, usual_speeds
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.words import listing, percent
 from gmr.pages.figure import Figure
@@ -57,9 +58,9 @@ def _sentence(names: Sequence[str], windows: Sequence[Table], step: int, limit: 
     speeds: list[str] = []
     turning: list[str] = []
     for name, table in held:
-        low, high = np.percentile(table["speed"], [5, 95])
+        low, high = usual_speeds(table)
         speeds.append(f"of {name}{'' if speeds else ' lie'} between {low:.1f} and {high:.1f} m/s")
-        turning.append(f"{percent(float(np.mean(np.abs(table['turn_rate_deg']) > 25)))} of {name}")
+        turning.append(f"{percent(turning_share(table, 25))} of {name}")
     parts = [
         f"Nine tenths {listing(speeds)}; {listing(turning)} turn faster than 25 degrees/s.",
         at_the_edge(np.concatenate([table["turn_rate_deg"] for _, table in held]), limit),

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.evaluation.figures.axes import at_the_edge, point_axes, widest_turn
+from gmr.evaluation.figures.time_shares import turning_share, usual_speeds
 from gmr.evaluation.figures.wording import base_name
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.words import count, percent
@@ -63,12 +64,11 @@ def _every(step: int, clips: NDArray[Any]) -> NDArray[np.int64]:
 def _sentence(windows: Table, clip_count: int, step: int, limit: float) -> str:
     if len(windows) == 0:
         return "No clip is long enough for a single window of one second."
-    speed, turn = windows["speed"], np.abs(windows["turn_rate_deg"])
-    usual = np.percentile(speed, [5, 95])
+    usual = usual_speeds(windows)
     parts = [
         f"Nine tenths of the motion of {count(clip_count, 'clip')} lies between {usual[0]:.1f} and "
-        f"{usual[1]:.1f} m/s; {percent(float(np.mean(turn > 25)))} of it turns faster than 25 degrees/s, "
-        f"{percent(float(np.mean(turn > 75)))} faster than 75 degrees/s.",
+        f"{usual[1]:.1f} m/s; {percent(turning_share(windows, 25))} of it turns faster than 25 degrees/s, "
+        f"{percent(turning_share(windows, 75))} faster than 75 degrees/s.",
     ]
     if outside := at_the_edge(windows["turn_rate_deg"], limit):
         parts.append(outside)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.evaluation.figures.trial_maps import HOVER, cells_of_trials, set_suffix, set_words, trials_of
-from gmr.evaluation.regions import Grid, Limits
+from gmr.evaluation.regions import HOLDS, MISSES_SPEED, MISSES_TURN_RATE, STRAYS, Grid, Limits
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.words import count, listing, percent
 from gmr.pages.figure import Figure
@@ -22,7 +22,7 @@ _MARKS: Final = ("✓", "path", "speed", "turn")
 
 
 def holds_map(evaluation: Evaluation, scenario: str, tracking: str, *, columns: int = 4) -> Figure:
-    """Every trial as held, or as failed by the limit that it exceeds most; the legend has ``columns``.
+    """Every trial as held, or what it fails by (:attr:`Grid.outcomes`); the legend has ``columns``.
 
     Two columns are for a map that is half as wide as the page.
     """
@@ -30,7 +30,7 @@ def holds_map(evaluation: Evaluation, scenario: str, tracking: str, *, columns: 
     grid = Grid.of(trials, evaluation.measured.coverage, Limits())
     row = np.searchsorted(grid.speeds, trials["speed"])
     column = np.searchsorted(grid.turn_rates_deg, trials["turn_rate_deg"])
-    outcome = _outcomes(grid, timed=tracking == "time")[row, column]
+    outcome = grid.outcomes[row, column]
     drawn = Table(
         {
             **{name: trials[name] for name in ("trial", "speed", "turn_rate_deg", *HOVER)},
@@ -47,32 +47,35 @@ def holds_map(evaluation: Evaluation, scenario: str, tracking: str, *, columns: 
     )
 
 
-def _outcomes(grid: Grid, *, timed: bool) -> NDArray[np.int64]:
-    """(V, W) index of the outcome: 0 where it holds, else the limit exceeded by the largest factor."""
-    limits = grid.limits
-    excess = np.stack(
-        [
-            grid.offset / limits.offset if timed else np.zeros_like(grid.offset),
-            np.abs(grid.speed_error_share) / limits.speed,
-            np.abs(grid.turn_rate_error_deg) / limits.turn_rate_deg,
-        ]
-    )
-    return np.where(grid.held, 0, 1 + np.argmax(np.nan_to_num(excess), axis=0))
-
-
 def _sentence(outcome: NDArray[np.int64], limits: Limits, *, timed: bool) -> str:
     number = np.bincount(outcome, minlength=len(_OUTCOMES))
-    failed = [f"{number[kind]} by {what}" for kind, what in ((1, "straying"), (2, "speed"), (3, "turn rate"))]
     path = [f"within {limits.offset:g} m of the plan"] if timed else []
     within = [
         *path,
         f"within {percent(limits.speed)} of the speed",
         f"within {limits.turn_rate_deg:g} degrees/s of the turn rate",
     ]
-    told = [text for text, kind in zip(failed, (1, 2, 3), strict=True) if number[kind]]
-    return f"{count(int(number[0]), 'trial goes', 'trials go')} as asked: on average {listing(within)}. " + (
-        f"Of the others, {listing(told)}, by the limit that is exceeded most." if told else "No trial fails."
-    )
+    goes = f"{count(int(number[HOLDS]), 'trial goes', 'trials go')} as asked: on average {listing(within)}."
+    return f"{goes} {_failing(number)}"
+
+
+def _failing(number: NDArray[np.int64]) -> str:
+    """By what how many trials fail; ``number`` is that of each outcome."""
+    both = number[MISSES_SPEED] and number[MISSES_TURN_RATE]
+    ways = {
+        MISSES_SPEED: "by speed",
+        MISSES_TURN_RATE: f"by turn rate{' (whichever is farther off)' if both else ''}",
+        STRAYS: "by straying alone",
+    }
+    failing = {by: int(number[way]) for way, by in ways.items() if number[way]}
+    others = sum(failing.values())
+    if not others:
+        return "No trial fails."
+    one, many = ("other one", "The other") if number[HOLDS] else ("one trial", "All")
+    who = f"The {one} fails" if others == 1 else f"{many} {others} fail"
+    if len(failing) == 1:
+        return f"{who} {next(iter(failing))}."
+    return f"{who}: {listing([f'{some} {by}' for by, some in failing.items()])}."
 
 
 def _chart(rows: int, columns: int) -> dict[str, Any]:
