@@ -40,6 +40,8 @@ def main() -> None:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
         page = browser.new_page(viewport={"width": 980, "height": 1000}, color_scheme="light")
         page.goto(report.resolve().as_uri())
+        page.wait_for_selector("html[data-drawn=yes]")
+        page.evaluate("document.dispatchEvent(new Event('draw-all'))")
         page.locator("#trial_map_holds svg").wait_for()
         page.locator("#replay").scroll_into_view_if_needed()
         page.wait_for_timeout(1000)

@@ -14,6 +14,7 @@ __all__ = [
     "duration",
     "gait_of",
     "going",
+    "hold",
     "listing",
     "number",
     "percent",
@@ -64,6 +65,11 @@ def beyond(value: float, limit: float) -> str:
         digits += 1
         told = f"{float(f'{value:.{digits}g}'):.10f}".rstrip("0").rstrip(".")
     return told
+
+
+def hold(trials: int) -> str:
+    """The verb behind a number of trials: 1 holds, others hold."""
+    return "holds" if trials == 1 else "hold"
 
 
 def percent(share: float) -> str:

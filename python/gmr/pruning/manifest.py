@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gmr.evaluation.reading import printable
-from gmr.evaluation.words import count, duration, number, percent
+from gmr.evaluation.words import count, duration, hold, number, percent
 from gmr.matching.database import Database
 from gmr.motion import Motion
 from gmr.pruning.outcomes import Score
@@ -191,7 +191,7 @@ def _cost_by_the_same_scale(written: Written) -> str:
     lost = written.whole.held - written.kept_scale.held
     said = f"It costs {f'{lost} of {written.whole.runs} trials' if lost > 0 else 'no trial'}"
     if lost < 0:
-        said += f", and {-lost} of {written.whole.runs} more hold"
+        said += f", and {-lost} of {written.whole.runs} more {hold(-lost)}"
     change = written.kept_scale.offset - written.whole.offset
     if math.isfinite(change):
         way = "grows" if change >= 0 else "shrinks"
@@ -206,7 +206,7 @@ def _cost_by_their_own_scale(written: Written) -> str:
     whole = f", where {before} did" if held != before else ", too"
     return (
         f"An evaluation of the new folder scales the features by what is left: there {held} of "
-        f"{count(written.own_scale.runs, 'trial')} hold{whole}."
+        f"{count(written.own_scale.runs, 'trial')} {hold(held)}{whole}."
     )
 
 

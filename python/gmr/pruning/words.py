@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from gmr.evaluation.words import count, duration, listing, number, percent
+from gmr.evaluation.words import count, duration, hold, listing, number, percent
 from gmr.pruning.curve import Point
 from gmr.pruning.outcomes import Score
 from gmr.pruning.prune import Pruning
@@ -177,7 +177,7 @@ def _metres(score: Score) -> float:
 def _cost(of: Pruning, point: Point) -> str:
     """What a point costs, as a clause."""
     before, after = of.outcomes.score, point.score
-    held = f"{after.held} of {count(after.runs, 'trial')} hold"
+    held = f"{after.held} of {count(after.runs, 'trial')} {hold(after.held)}"
     held += ", as before" if after.held == before.held else f" where {before.held} did"
     if math.isnan(after.offset):
         return held
