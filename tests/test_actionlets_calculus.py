@@ -256,3 +256,10 @@ NAN = float("nan")
 def test_what_cannot_be_is_refused_in_words(make: Callable[[], object], words: str) -> None:
     with pytest.raises(gmr.ActionletError, match=words):
         make()
+
+
+@pytest.mark.parametrize("travel", [5e-324, 2.2e-309, -1e-310])
+def test_a_course_of_hardly_any_travel_is_led_over(travel: float) -> None:
+    led = Measured(np.array([0.0, travel]), 0.1).between(0.0, 0.4)
+    assert np.isfinite(led.angles).all()
+    assert (led.start, led.end) == (0.0, 0.4)

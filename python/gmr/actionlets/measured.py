@@ -6,6 +6,7 @@ Source: Zheng et al., "Human Motion Simulation and Action Corpus", section 2: th
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -112,8 +113,11 @@ class Measured:
     def between(self, start: float, end: float) -> Measured:
         """The same course between other angles: scaled; a course that is more to and fro than travel is left
         its size, and led over by a symmetric actionlet."""
-        if 2 * abs(self.travel) > float(np.ptp(self.angles)):
-            angles = start + (self.angles - self.start) * ((end - start) / self.travel)
+        travels = 2 * abs(self.travel) > float(np.ptp(self.angles))
+        scale = (end - start) / self.travel if travels else math.inf
+        # A travel so small that no number tells how many times it must be scaled is none.
+        if math.isfinite(scale):
+            angles = start + (self.angles - self.start) * scale
         else:
             over = share(np.linspace(0, 1, len(self.angles)), SYMMETRIC)
             angles = self.angles + (start - self.start) * (1 - over) + (end - self.end) * over

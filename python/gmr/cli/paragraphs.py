@@ -11,7 +11,7 @@ from typing import Final
 __all__ = ["listed_sentences", "paragraph"]
 
 _WIDEST: Final = 100
-_OPTION: Final = re.compile(r'--[a-z-]+ (?:"[^"]*"|\S+)')
+_OPTION: Final = re.compile(r'(?<!\S)--[a-z-]+ (?:"[^"]*"|\S+)')
 """An option with its value, to be copied into a command: it stays on one line."""
 
 
