@@ -25,7 +25,7 @@ from gmr.matching import LOCOMOTION, Database, Profile, Status, run_trials
 from gmr.matching.trial import Tracking
 from gmr.pruning.outcomes import outcomes_of
 from restless import without_rest
-from walkers import CMU, walker
+from walkers import CMU, placed, walker
 
 DEMO = Path(gmr.__file__).parent / "data" / "demo"
 SPEEDS, TURNS = (1.2, 1.6), (-45.0, 0.0, 45.0)
@@ -133,13 +133,25 @@ def test_a_dataset_with_mirrored_copies_is_offered_none(
 def test_a_clip_that_the_dataset_holds_already_changes_nothing(
     straight: dict[str, gmr.Motion], others: dict[str, gmr.Motion], completed: Completion
 ) -> None:
-    # Of two files of one motion the shorter name stands; here the dataset's own are meant.
-    again = {"a.bvh": straight["straight.bvh"], "b.bvh": straight["faster.bvh"][:]}
+    # Of two files of one motion the shorter name would stand; here it is the dataset's own.
+    again = {"a.bvh": straight["straight.bvh"], "b.bvh": placed(straight["faster.bvh"], 1.0, (2.0, 0.0))}
     found = complete_from(
         straight, {**again, **others}, source="archive", dataset="two", speeds=SPEEDS, turn_rates_deg=TURNS
     )
     assert [choice.name for choice in found.choices] == [choice.name for choice in completed.choices]
     np.testing.assert_array_equal(found.trials["held_after"], completed.trials["held_after"])
+    assert found.held_before == completed.held_before
+
+
+@pytest.mark.parametrize("mirror", [False, True])
+def test_of_a_motion_that_the_dataset_holds_already_its_own_file_stays(mirror: bool) -> None:
+    walks = {f"day 1/walk {speed}.bvh": walker(6, speed, 0.3 * speed) for speed in SPEEDS}
+    far = {name.split()[-1]: placed(walk, 1.0, (2.0, 0.0)) for name, walk in walks.items()}
+    others = {"left.bvh": walker(8, 1.2, LEFT)}
+    asked: dict[str, Any] = {"speeds": SPEEDS, "turn_rates_deg": TURNS, "mirror": mirror}
+    once, again = (complete_from(walks, archive, **asked) for archive in (others, {**far, **others}))
+    assert once.held_before == again.held_before
+    assert not {choice.name for choice in again.choices} & set(far)
 
 
 def test_a_dataset_without_holes_is_left_alone(straight: dict[str, gmr.Motion]) -> None:

@@ -77,11 +77,10 @@ def test_a_motion_is_known_again_however_its_file_has_it(again: str) -> None:
         ),
         "mirrored": walk.mirror(),
     }
-    database = Database.build(
-        {"walk": walk, "again": files[again], "run": WALKS[1]}, mirror=again == "mirrored"
-    )
-    assert database.duplicates == {"again": "walk"}
-    alone = Database.build({"walk": walk, "run": WALKS[1]}, mirror=again == "mirrored")
+    once, mirror = {"walk": walk, "run": WALKS[1]}, again == "mirrored"
+    database = Database.build({"again": files[again], **once}, mirror=mirror)
+    assert database.duplicates == {"again": "walk (mirrored)" if mirror else "walk"}
+    alone = Database.build(once, mirror=mirror)
     assert database.features.tobytes() == alone.features.tobytes()
 
 
@@ -89,8 +88,39 @@ def test_a_take_is_known_again_without_the_pose_that_a_converter_put_before_it(d
     take = gmr.read(data / "cmu_07_01.bvh")
     takes = {"take": take, "without": take[1:], "mirrored": take[1:].mirror()}
     database = Database.build(takes, mirror=True, schema=SHORT)
-    assert database.duplicates == {"without": "take", "mirrored": "take"}
+    assert database.duplicates == {"without": "take", "mirrored": "take (mirrored)"}
     assert database.clip_names == ("take", "take (mirrored)")
+
+
+@pytest.mark.parametrize("joint", range(len(WALKS[0].skeleton.names)))
+def test_a_bone_that_is_turned_otherwise_makes_another_motion(joint: int) -> None:
+    walk = WALKS[0]
+    slot = int(walk.skeleton.slots[joint])
+    if slot < 0:
+        pytest.skip("nothing turns with this joint")
+    along = walk.rotations.copy()
+    for frame, angle in enumerate(np.radians(20) * np.sin(np.linspace(0, 6, walk.frame_count))):
+        along[frame, slot] = _turned_by(along[frame, slot], float(angle))
+    other = Motion.from_pose(walk.skeleton, along, walk.translations, walk.frame_time, unit=walk.unit)
+    assert not Database.build({"a": walk, "b": other}).duplicates
+
+
+def test_hands_and_head_that_nothing_hangs_on_are_looked_at() -> None:
+    ends = replace(WALKS[0].skeleton, ends=np.zeros_like(WALKS[0].skeleton.ends))
+    leaf = int(np.flatnonzero(~np.isin(np.arange(len(ends.names)), ends.parents) & (ends.slots >= 0))[0])
+    nod = WALKS[0].rotations.copy()
+    nod[:, ends.slots[leaf]] = multiply(nod[:, ends.slots[leaf]], np.array([0.0, 0.1, 0.0, np.sqrt(0.99)]))
+    clips = {
+        name: Motion.from_pose(ends, rotations, WALKS[0].translations, WALKS[0].frame_time, unit=1.0)
+        for name, rotations in (("a", WALKS[0].rotations), ("b", nod))
+    }
+    assert not Database.build(clips).duplicates
+
+
+def test_of_files_of_one_motion_the_one_with_the_highest_rate_stays() -> None:
+    walk = walker(3.0, 1.2, 0.4, fps=120)
+    clips = {"a": walk[::2], "the whole take": walk, "again the whole take": walk}
+    assert Database.build(clips).duplicates == dict.fromkeys(("a", "again the whole take"), "the whole take")
 
 
 def test_motions_that_differ_by_a_millimetre_or_a_frame_are_two() -> None:

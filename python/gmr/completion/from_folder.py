@@ -227,8 +227,13 @@ class _Hunt:
     ) -> Contest:
         """The dataset and the candidates that are tried, side by side."""
         self.tell("preparing candidates", 0, 1)
-        beside = {**self.kind.motions, **clips}
-        database = self.kind.build(beside, mirror=bool(self.kind.whole.mirrored.any()))
+        own, mirror = self.kind.motions, bool(self.kind.whole.mirrored.any())
+        database = self.kind.build({**own, **clips}, mirror=mirror)
+        # A candidate that is a clip of the dataset's adds nothing; the dataset's own is the one that stays.
+        known = {first for name, first in database.duplicates.items() if name in own}
+        if again := [name for name in clips if known & {name, f"{name} (mirrored)"}]:
+            left = {name: clip for name, clip in clips.items() if name not in again}
+            database = self.kind.build({**own, **left}, mirror=mirror)
         refused.update({name: why for name, why in database.excluded.items() if name in clips})
         self.tell("preparing candidates", 1, 1)
         there = set(database.clip_names)

@@ -21,7 +21,7 @@ from gmr.errors import DatasetError
 from gmr.matching import saved
 from gmr.matching.assemble import Assembly, Tags, assemble
 from gmr.matching.database_rows import DatabaseRows
-from gmr.matching.duplicates import duplicates, duplicates_note
+from gmr.matching.duplicates import duplicates, duplicates_note, followed
 from gmr.matching.naming import named
 from gmr.matching.normalization import Normalization
 from gmr.matching.schema import LOCOMOTION, Schema
@@ -62,7 +62,8 @@ class Database(DatabaseRows):
     excluded: Mapping[str, str]
     """Clips that could not be used, by name, and why."""
     duplicates: Mapping[str, str]
-    """Clips left out because another is the same motion with the same tags, by name, and which it is."""
+    """Clips left out because another, or its mirrored copy, is the same motion with the same tags: by
+    name, and for each the one in :attr:`clip_names` that is the same."""
     starts: NDArray[np.float64]
     """(C,) second of its file at which each clip begins (not 0 where a converter's T-pose was left out)."""
 
@@ -112,8 +113,8 @@ class Database(DatabaseRows):
 
         given, twice = named(motions), dict[str, str]()
         database = without(twice)
-        while more := duplicates(database, database.mirrored):
-            twice = {name: more.get(first, first) for name, first in twice.items()} | more
+        while more := duplicates(database, database.mirrored, given):
+            twice = followed(twice, more)
             database = without(twice)
         if not twice:
             return database

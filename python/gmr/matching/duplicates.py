@@ -7,15 +7,19 @@ the same motion would be a way around that, and weigh twice where features are s
 from __future__ import annotations
 
 from bisect import bisect_left, insort
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gmr.matching.database_rows import DatabaseRows
+from gmr.motion import Motion
 
-__all__ = ["duplicates", "duplicates_note"]
+__all__ = ["duplicates", "duplicates_note", "followed"]
+
+_IMAGE: Final = " (mirrored)"
+"""What the name of a mirrored copy ends with."""
 
 _ALIKE: Final = 1e-4
 """Metres by which joints may differ, seen from the simulation root: digits that were not written."""
@@ -23,55 +27,94 @@ _ALIKE: Final = 1e-4
 _STEPS_ALIKE: Final = 1e-5
 """Metres, and radians, by which what the root does in a frame may differ."""
 
+_TURNS_ALIKE: Final = 5e-4
+"""By which the numbers of a quaternion may differ: half an angle in radians."""
 
-def duplicates(rows: DatabaseRows, mirrored: NDArray[np.bool_]) -> dict[str, str]:
-    """The clips that equal another, or its mirrored copy, frame by frame and tag by tag.
 
-    They are compared as the database has them: whatever their rate, their unit, where they lie in the world,
-    and whether a converter put a T-pose before them.
+def duplicates(
+    rows: DatabaseRows, mirrored: NDArray[np.bool_], motions: Mapping[str, Motion]
+) -> dict[str, str]:
+    """The clips that equal another, or its mirrored copy, frame by frame, joint by joint and tag by tag.
+
+    They are compared as the database has them: whatever their unit, where they lie in the world, and whether
+    a converter put a T-pose before them.
 
     Args:
         rows: of a database.
         mirrored: (C,) which of its clips are mirrored copies, each behind its original.
+        motions: what its clips were read from, by name.
 
     Returns:
-        Their names, and the name of the clip that stands for each: the shortest, as copies are named after
-        what they were made of; of equals the first.
+        Their names, and for each the name of the clip in the database that is the same: of the file with the
+        highest rate, of equals the one with the shortest name, as copies are named after what they were made
+        of, of equals the first.
     """
     found: dict[str, str] = {}
     for alike in _alike(rows, mirrored):
-        stays = min(alike, key=len)
-        found.update({name: stays for name in alike if name != stays})
+        stays = min(alike, key=lambda name: (round(motions[name].frame_time, 6), len(name)))
+        for name, image in alike.items():
+            if name != stays:
+                found[name] = stays if image == alike[stays] else stays + _IMAGE
     return found
 
 
-def _alike(rows: DatabaseRows, mirrored: NDArray[np.bool_]) -> Iterator[list[str]]:
-    """The clips by their motion, mirrored copies not named."""
-    groups: list[list[str]] = []
-    # By the number of frames: a number of the last one, the clip, and its group.
-    known: dict[int, list[tuple[float, int, int]]] = {}
-    group = 0
+def _alike(rows: DatabaseRows, mirrored: NDArray[np.bool_]) -> list[dict[str, bool]]:
+    """The clips by their motion, mirrored copies not named; whether each is the mirror image of the first."""
+    groups: list[dict[str, bool]] = []
+    # By the number of frames: a number of the last one, the clip, its group and whether it is an image there.
+    known: dict[int, list[tuple[float, int, int, bool]]] = {}
+    group, image = 0, False
     for clip, (start, end) in enumerate(rows.core.clip_ranges):
         same_length = known.setdefault(end - start, [])
         told = float(rows.positions[end - 1].mean(dtype=np.float64))
-        if not mirrored[clip]:
+        if mirrored[clip]:
+            image = not image
+        else:
             near = same_length[bisect_left(same_length, (told - _ALIKE,)) :]
-            same = (of for number, other, of in near if number <= told + _ALIKE and _same(rows, other, clip))
-            group = next(same, len(groups))
+            same = (
+                (of, turned)
+                for number, other, of, turned in near
+                if number <= told + _ALIKE and _same(rows, other, clip)
+            )
+            group, image = next(same, (len(groups), False))
             if group == len(groups):
-                groups.append([])
-            groups[group].append(rows.clip_names[clip])
-        insort(same_length, (told, clip, group))
-    yield from groups
+                groups.append({})
+            groups[group][rows.clip_names[clip]] = image
+        insort(same_length, (told, clip, group, image))
+    return groups
 
 
 def _same(rows: DatabaseRows, one: int, other: int) -> bool:
     """Whether two clips of one length show the same."""
     ours, theirs = rows.clip_rows(one), rows.clip_rows(other)
-    compared = ((rows.displacements, _STEPS_ALIKE), (rows.turns, _STEPS_ALIKE), (rows.positions, _ALIKE))
-    return np.array_equal(rows.tags[ours], rows.tags[theirs]) and all(
-        bool((np.abs(values[ours] - values[theirs]) <= within).all()) for values, within in compared
+    compared = (
+        (rows.displacements, _STEPS_ALIKE),
+        (rows.turns, _STEPS_ALIKE),
+        (rows.positions, _ALIKE),
+        (rows.core.translations, _ALIKE),
     )
+    return (
+        np.array_equal(rows.tags[ours], rows.tags[theirs])
+        and all(bool((np.abs(values[ours] - values[theirs]) <= within).all()) for values, within in compared)
+        and _turned_alike(rows.core.rotations[ours], rows.core.rotations[theirs])
+    )
+
+
+def _turned_alike(ours: NDArray[np.float32], theirs: NDArray[np.float32]) -> bool:
+    """Whether bones are turned alike, those too that nothing hangs on; q and -q are one rotation."""
+    apart = np.minimum(np.abs(ours - theirs).max(axis=-1), np.abs(ours + theirs).max(axis=-1))
+    return bool((apart <= _TURNS_ALIKE).all())
+
+
+def followed(found: Mapping[str, str], more: Mapping[str, str]) -> dict[str, str]:
+    """All duplicates, when some clips that stood for others turn out to be duplicates themselves."""
+    stand = {}
+    for name, first in found.items():
+        of = first.removesuffix(_IMAGE)
+        then = more.get(of, of)
+        odd = first.endswith(_IMAGE) != then.endswith(_IMAGE)
+        stand[name] = then.removesuffix(_IMAGE) + (_IMAGE if odd else "")
+    return {**stand, **more}
 
 
 def duplicates_note(found: Mapping[str, str]) -> str:

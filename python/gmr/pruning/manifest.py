@@ -11,7 +11,6 @@ import numpy as np
 
 from gmr.evaluation.reading import printable
 from gmr.evaluation.words import count, duration, hold, number, percent
-from gmr.matching.database import Database
 from gmr.motion import Motion
 from gmr.pruning.outcomes import Score
 from gmr.pruning.part import Range, gaps, recordings_of
@@ -33,6 +32,7 @@ def manifest(of: Pruning, written: Written, motions: Mapping[str, Motion]) -> st
     content = {
         "dataset": of.dataset,
         "goal": of.goal,
+        "mirror": bool(database.mirrored.any()),
         "seconds_before": of.curve.points[0].part.seconds,
         "seconds_after": written.part.seconds,
         "identical": written.identical,
@@ -89,16 +89,17 @@ def _gone(of: Pruning, written: Written) -> Iterator[dict[str, Any]]:
                 "played_seconds": shown,
                 "why": _why(of, recording.name, (first, end), shown, worth[recording.name], whole),
             }
-    yield from _duplicates(of.simulation.database)
+    yield from _duplicates(of)
 
 
-def _duplicates(database: Database) -> Iterator[dict[str, Any]]:
+def _duplicates(of: Pruning) -> Iterator[dict[str, Any]]:
     """The clips that another one equals, which were gone before the first trial."""
-    frames = {recording.name: recording.frames for recording in recordings_of(database)}
-    for name, first in database.duplicates.items():
+    everything = of.curve.points[0].part
+    for name, first in of.simulation.database.duplicates.items():
+        ((_, end),) = everything.ranges[name]
         yield {
             "clip": name,
-            "seconds": [0.0, (frames[first] - 1) / database.rate],
+            "seconds": [0.0, (end - 1) / everything.rate],
             "whole": True,
             "played_seconds": 0.0,
             "why": f"the same motion as '{first}'",

@@ -110,7 +110,11 @@ def whole(database: Database) -> Part:
     ranges: dict[str, tuple[Range, ...]] = {
         each.name: ((0, each.frames),) for each in recordings_of(database)
     }
-    twice = {name: ranges[first] for name, first in database.duplicates.items()}
+    frames = {
+        name: end - start
+        for name, (start, end) in zip(database.clip_names, database.core.clip_ranges, strict=True)
+    }
+    twice = {name: ((0, frames[first]),) for name, first in database.duplicates.items()}
     return Part(database.rate, ranges | twice)
 
 
