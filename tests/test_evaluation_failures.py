@@ -16,6 +16,7 @@ from gmr.evaluation.failing_blocks import failing_blocks
 from gmr.evaluation.failure_sentences import failure_sentences
 from gmr.evaluation.regions import Grid, Limits
 from gmr.evaluation.words import beyond
+from gmr.table import Table
 
 LIMITS = Limits()
 WAYS = ("holds", "strays", "slow", "fast", "little", "much")
@@ -276,3 +277,47 @@ def columns_of_blocks(turns: NDArray[np.float64]) -> Iterator[NDArray[np.int64]]
         within = (np.abs(turns) >= low) & (np.abs(turns) <= high)
         for side in (turns > 0, turns < 0, turns != 0):
             yield np.flatnonzero(within & side)
+
+
+def switching_grid(shares: list[list[float]], means: float = -0.01) -> Grid:
+    """Trials that switch to 4 m/s and back, off by shares of the worse kept speed, but hardly in the mean."""
+    share = np.array(shares)
+    speeds, turns = np.linspace(1, 1.25, len(share)), np.array([0.0, 50.0])[: share.shape[1]]
+    trials = {
+        "scenario": np.full(share.size, "switching", object),
+        "tracking": np.full(share.size, "time", object),
+        "speed": speeds.repeat(len(turns)),
+        "turn_rate_deg": np.tile(turns, len(speeds)),
+        "offset_mean": np.full(share.size, 0.3),
+        "speed_error": np.full(share.size, means),
+        "speed_error_share": share.ravel(),
+        "turn_rate_error_deg": np.zeros(share.size),
+        "switched_speed": np.full(share.size, 4.0),
+        "switch_every": np.full(share.size, 5.0),
+    }
+    coverage = {
+        name: np.array(values)
+        for name, values in {"forward_speed": [1.0], "speed": [1.0], "turn_rate_deg": [0.0]}.items()
+    }
+    return Grid.of(Table(trials), Table(coverage | {"weight": np.array([9.5])}), LIMITS)
+
+
+def test_trials_that_switch_speeds_are_told_by_the_speed_that_they_fail_by() -> None:
+    (told,) = failure_sentences(switching_grid([[0.217], [0.166]]))
+    assert told == (
+        "It fails when going straight at 1 to 1.25 m/s while switching to 4 m/s and back every 5 s "
+        "(2 trials): "
+        "9.5 seconds of the clips move like that at 1 to 1.25 m/s, under 1 second in 1 of the trials, and "
+        "the character goes 19% too fast in the median (17 to 22%) at the speed of the two that it "
+        "misses by more."
+    )
+
+
+def test_trials_that_switch_speeds_and_fail_both_ways_say_by_which_shares() -> None:
+    shares = [[0.1, 0.2], [0.1, -0.3], [0.1, 0.2], [0.1, -0.3]]
+    (told,) = failure_sentences(switching_grid(shares))
+    assert "turning left by 50 degrees/s at 1 to 1.25 m/s while switching to 4 m/s and back" in told
+    assert told.endswith(
+        "goes too fast at the speed of the two that it misses by more in 2 of them (by 20% in the median) "
+        "and goes too slowly at the speed of the two that it misses by more in 2 (by 30%)."
+    )

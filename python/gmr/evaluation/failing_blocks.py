@@ -111,7 +111,7 @@ def _ways(grid: Grid) -> NDArray[np.str_]:
     how = {
         HOLDS: "",
         STRAYS: STRAY,
-        MISSES_SPEED: np.where(grid.speed_error < 0, SLOW, FAST),
+        MISSES_SPEED: np.where(grid.speed_error_share < 0, SLOW, FAST),
         MISSES_TURN_RATE: np.where(side == 0, TURNS_AWAY, turns),
     }
     return np.choose(grid.outcomes, [how[outcome] for outcome in sorted(how)])

@@ -10,7 +10,7 @@ import numpy as np
 from gmr.evaluation.failing_blocks import Block, failing_blocks
 from gmr.evaluation.regions import EITHER, LEFT, LEFT_ONLY, RIGHT, RIGHT_ONLY, STRAIGHT, Grid, Region
 from gmr.evaluation.symptoms import symptom
-from gmr.evaluation.words import GAITS, circles, count, duration, gait_of, listing, span
+from gmr.evaluation.words import GAITS, circles, count, duration, gait_of, listing, span, switching
 
 __all__ = ["capture_sentences", "failure_sentences"]
 
@@ -41,6 +41,8 @@ def _movement(grid: Grid, block: Block) -> str:
     speeds = grid.speeds[block.cells[:, 0]]
     turns = np.abs(grid.turn_rates_deg[block.cells[:, 1]])
     at = f"at {span(speeds.min(), speeds.max(), 'm/s')}"
+    if grid.switching is not None:
+        at += " while " + switching(*grid.switching)
     if block.side == STRAIGHT:
         return f"going straight {at}"
     by = span(turns.min(), turns.max(), "degrees/s")
@@ -62,10 +64,14 @@ def _trials(block: Block) -> str:
 
 def _clips_there(grid: Grid, block: Block) -> str:
     seconds = grid.seconds[tuple(block.cells.T)]
+    like = "like that"
+    if grid.switching is not None:
+        speeds = grid.speeds[block.cells[:, 0]]
+        like += f" at {span(speeds.min(), speeds.max(), 'm/s')}"
     empty = int((seconds < grid.limits.covered).sum())
     if seconds.sum() < 0.05:
-        return "no clip moves like that"
-    total = f"{duration(float(seconds.sum()))} of the clips move like that"
+        return f"no clip moves {like}"
+    total = f"{duration(float(seconds.sum()))} of the clips move {like}"
     if empty == 0:
         return total
     if empty == len(seconds):
