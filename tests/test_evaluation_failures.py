@@ -26,8 +26,9 @@ BY_LETTER = dict(zip(".psfto", WAYS, strict=True))
 SENTENCE = re.compile(
     r"It fails when (?:going straight|turning (?P<side>[^0-9]+) by (?P<turns>[^d]+) degrees/s)"
     r" at (?P<speeds>[^m]+) m/s \((?P<count>\d+)(?: of (?P<among>\d+))? trials?"
-    r"(?:, (?P<alone>\d+) of them not to the (?:left|right))?"
-    r"(?:, (?P<otherwise>\d+) more in other ways)?\): (?P<clips>.*), and the character (?P<symptom>.*)\."
+    r"(?:, (?P<otherwise>\d+) more in other ways)?"
+    r"(?:; for (?P<alone>\d+) of the (?P=count) the same turn to the (?P<other>left|right) holds)?"
+    r"\): (?P<clips>.*), and the character (?P<symptom>.*)\."
 )
 
 
@@ -41,6 +42,7 @@ class Told:
     count: int
     among: int
     alone: int | None
+    other: str | None
     otherwise: int
     symptom: str
 
@@ -56,6 +58,7 @@ class Told:
             count,
             int(found["among"] or count),
             int(found["alone"]) if found["alone"] else None,
+            found["other"],
             int(found["otherwise"] or 0),
             found["symptom"],
         )
@@ -182,6 +185,7 @@ def test_each_failing_trial_is_counted_once_and_every_claim_is_true(
             alone = held_to_the_other_side(grid, counted)
             assert ("though not" in each.side) == (alone == each.count)
             assert each.alone in (None, alone)
+            assert each.other in (None, {"left": "right", "right": "left"}.get(each.side))
         if len(each.ways) == 1:
             assert_symptom(each, grid, counted)
 
@@ -233,6 +237,14 @@ def test_a_column_that_fails_in_a_way_of_its_own_has_a_sentence_of_its_own() -> 
         ("right", "little", 5, 5, 0),
     ]
     assert more == 1
+
+
+def test_the_same_turns_that_hold_to_the_other_side_are_counted() -> None:
+    sentence = next(failure_sentences(drawn("sss . ..s", "ss. . ..s", "sss . .s.")))
+    assert sentence.startswith(
+        "It fails when turning right by 25 to 75 degrees/s at 1 to 3 m/s "
+        "(8 of 9 trials; for 5 of the 8 the same turn to the left holds): "
+    )
 
 
 def test_a_distance_beyond_the_limit_is_printed_beyond_it() -> None:

@@ -55,11 +55,11 @@ def _trials(block: Block) -> str:
     among = "" if failing == block.spanned else f" of {block.spanned}"
     trials = "trial" if failing == block.spanned == 1 else "trials"
     other = {LEFT: "right", RIGHT: "left"}.get(block.side)
-    alone = (
-        f", {block.one_sided} of them not to the {other}" if other and 2 * block.one_sided >= failing else ""
-    )
+    alone = ""
+    if other and 2 * block.one_sided >= failing:
+        alone = f"; for {block.one_sided} of the {failing} the same turn to the {other} holds"
     more = f", {block.otherwise} more in other ways" if block.otherwise else ""
-    return f"{failing}{among} {trials}{alone}{more}"
+    return f"{failing}{among} {trials}{more}{alone}"
 
 
 def _clips_there(grid: Grid, block: Block) -> str:
