@@ -97,7 +97,7 @@ def test_what_could_not_be_done_is_told_to_machines_too(
     said = capsys.readouterr()
     told = json.loads(said.out)
     assert list(told["not_done"]) == ["--tune"]
-    assert told["not_done"]["--tune"].startswith("1 constant trials cannot be split")
+    assert told["not_done"]["--tune"].startswith("1 constant trial cannot be split")
     assert "tuned" not in told
     assert told["pruned"]["identical"] is True
     assert "--tune came to nothing" in said.err
