@@ -289,5 +289,5 @@ def test_what_cannot_be_tuned_is_refused(evaluated: Evaluation, tmp_path: Path) 
     with pytest.raises(ValueError, match="0 or more"):
         tune(evaluated, smoothness=-1.0)
     write_walkers(tmp_path, {"a.bvh": Arc(3.0, 1.0)})
-    with pytest.raises(ValueError, match="1 constant trials cannot be split"):
+    with pytest.raises(ValueError, match="1 constant trial cannot be split"):
         tune(tmp_path, speeds=(1.0,), turn_rates_deg=(0.0,))

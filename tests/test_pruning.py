@@ -256,6 +256,14 @@ def test_the_headline_tells_what_an_evaluation_of_the_new_folder_shows(
     )
 
 
+def test_clips_that_go_as_a_whole_leave_no_part_of_another(pruned: Pruning) -> None:
+    whole = pruned.curve.points[0].part
+    first, *others = whole.ranges
+    left = replace(whole, ranges={first: whole.ranges[first], **dict.fromkeys(others, ())})
+    told = sentences(replace(pruned, lossless=left))
+    assert any(f"of {len(whole.ranges)} as a whole, and no part of another. Without" in one for one in told)
+
+
 def test_one_trial_is_one(pruned: Pruning) -> None:
     rows = len(pruned.importance)
     lost = np.array([-1.0, -2.0, *[0.0] * (rows - 2)])

@@ -97,7 +97,7 @@ def test_what_could_not_be_done_is_told_to_machines_too(
     said = capsys.readouterr()
     told = json.loads(said.out)
     assert list(told["not_done"]) == ["--tune"]
-    assert told["not_done"]["--tune"].startswith("1 constant trials cannot be split")
+    assert told["not_done"]["--tune"].startswith("1 constant trial cannot be split")
     assert "tuned" not in told
     assert told["pruned"]["identical"] is True
     assert "--tune came to nothing" in said.err
@@ -139,6 +139,17 @@ def test_clips_are_not_written_into_the_dataset_that_they_come_from(
             "--complete-out and --prune-out are pruned/more and pruned, one in",
         ),
         (("--tables", "completed"), "--complete-out and --tables are both completed"),
+        (
+            ("--tables", "completed/clips"),
+            "--tables is completed/clips, where --complete-out writes the clips",
+        ),
+        (("--figures", "completed"), "--complete-out and --figures are both completed"),
+        (("--figures", "completed/clips/x"), "--figures is completed/clips/x, where --complete-out writes"),
+        (("-o", "completed/clips/r.html"), "--out is completed/clips/r.html, where --complete-out writes"),
+        (("--tables", "pruned"), "--tables is pruned, where --prune-out writes a dataset"),
+        (("--tables", "two/../pruned/tables"), "--tables is two/../pruned/tables, where --prune-out writes"),
+        (("--figures", "pruned"), "--figures is pruned, where --prune-out writes a dataset"),
+        (("-o", "pruned/report.html"), "--out is pruned/report.html, where --prune-out writes a dataset"),
         (("-o", "completed/after.html"), "--out is completed/after.html, where --complete-out writes"),
     ],
 )
@@ -154,6 +165,18 @@ def test_no_result_is_written_over_another(
     said = " ".join(capsys.readouterr().err.split())
     assert named in said
     assert "give" in said
+    assert not list(elsewhere.iterdir())
+
+
+def test_nothing_else_is_written_into_the_folder_of_the_smaller_dataset(
+    folder: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    elsewhere = folder.parent / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    places = ("--tables", "less", "--figures", "less", "-o", "less/report.html")
+    assert run(folder, *SMALL, "--prune", "30%", "--prune-out", "less", *places) == 2
+    assert "--prune-out writes a dataset" in " ".join(capsys.readouterr().err.split())
     assert not list(elsewhere.iterdir())
 
 

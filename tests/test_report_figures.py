@@ -259,6 +259,7 @@ def test_the_map_of_the_verdict_says_by_what_the_others_fail(evaluation: Evaluat
         return holds_map(replace(evaluation, measured=measured), "constant", "time").sentence
 
     assert said().endswith("No trial fails.")
+    assert said(speed_error_share=(81, -0.5)) == "No trial goes as asked. All 81 fail by speed."
     assert said(offset_mean=(1, 2.0)).endswith("The other one fails by straying alone.")
     assert said(speed_error_share=(9, -0.5)).endswith("The other 9 fail by speed.")
     told = said(speed_error_share=(9, -0.5), turn_rate_error_deg=(4, 80.0), offset_mean=(12, 2.0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
@@ -161,10 +161,11 @@ def evaluate(
         raise click.UsageError("--complete-from completes one dataset; give one folder.")
     if len(folders) > 1 and tune:
         raise click.UsageError("--tune finds the weights of one dataset; give one folder.")
-    if completing is not None:
-        _check_apart(
-            completing.out, prune_out if prune is not None else None, tables, None if no_report else out
-        )
+    _check_apart(
+        completing.out if completing is not None else None,
+        prune_out if prune is not None else None,
+        {"--tables": tables, "--figures": figures, "--out": None if no_report else out},
+    )
     phases = Phases(quiet)
     with phases, trouble_with_files(phases):
         _check_places(None if no_report else out, tables, figures, phases)
@@ -231,20 +232,42 @@ def _evaluated(sources: Sequence[Path | Read], **settings: Any) -> Evaluation | 
     return gmr.evaluate(sources[0], **settings) if len(sources) == 1 else gmr.compare(sources, **settings)
 
 
-def _check_apart(completed: Path, pruned: Path | None, tables: Path | None, report: Path | None) -> None:
-    """Refuse places of which one result would overwrite the other."""
-    if pruned is not None:
+def _check_apart(completed: Path | None, pruned: Path | None, places: Mapping[str, Path | None]) -> None:
+    """Refuse places of which one result would overwrite the other, or be taken for a part of it.
+
+    Args:
+        completed: the folder of a completion, if there is to be one.
+        pruned: that of a pruning.
+        places: of all else that is written, by the option.
+    """
+    if completed is not None and pruned is not None:
         refuse_one_place(("--complete-out", completed), ("--prune-out", pruned))
-    if tables is not None and tables.resolve() == completed.resolve():
-        raise click.UsageError(
-            f"--complete-out and --tables are both {tables}, and each writes a trials.csv and a clips.csv; "
-            "give them two folders."
-        )
-    if report is not None and report.resolve() == (completed / "after.html").resolve():
-        raise click.UsageError(
-            f"--out is {report}, where --complete-out writes the report of the completed dataset; give --out "
-            "another name."
-        )
+    for option, place in places.items():
+        if place is None:
+            continue
+        if pruned is not None and _within(place, pruned):
+            raise click.UsageError(
+                f"{option} is {place}, where --prune-out writes a dataset, which has nothing else in its "
+                f"folder; give {option} a place elsewhere."
+            )
+        if completed is not None:
+            _check_beside_completion(option, place, completed)
+
+
+def _check_beside_completion(option: str, place: Path, completed: Path) -> None:
+    if place.resolve() == completed.resolve():
+        each = ", and each writes a trials.csv and a clips.csv" if option == "--tables" else ""
+        raise click.UsageError(f"--complete-out and {option} are both {place}{each}; give them two folders.")
+    for own, what in (("clips", "the clips"), ("after.html", "the report of the completed dataset")):
+        if _within(place, completed / own):
+            raise click.UsageError(
+                f"{option} is {place}, where --complete-out writes {what}; give {option} another place."
+            )
+
+
+def _within(place: Path, folder: Path) -> bool:
+    """Whether a place is a folder, or in it."""
+    return folder.resolve() in (place.resolve(), *place.resolve().parents)
 
 
 def _check_places(out: Path | None, tables: Path | None, figures: Path | None, phases: Phases) -> None:

@@ -25,6 +25,7 @@ from gmr.evaluation.regions import (
 )
 
 __all__ = [
+    "APART",
     "FAST",
     "MIXED",
     "SLOW",
@@ -53,6 +54,9 @@ MIXED: Final = "fails in several ways"
 WORTH_MIXING: Final = 1.75
 """Trials that fail in several ways are told as one block where it tells so many times what one way can."""
 
+APART: Final = "left and right apart"
+"""Both ways, where the least or the steepest of the turn rates is asked for one way only."""
+
 _WAYS: Final = (TURNS_AWAY, TURNS_LITTLE, TURNS_MUCH, SLOW, FAST, STRAY)
 
 _SIGNS: Final = {STRAIGHT: (0,), EITHER: (1, -1), LEFT: (1,), RIGHT: (-1,)}
@@ -65,10 +69,11 @@ class Block:
     Attributes:
         cells: (K, 2) index of speed and of turn rate of each.
         ways: (K,) STRAY, SLOW, FAST, TURNS_LITTLE, TURNS_MUCH or TURNS_AWAY of each.
-        side: STRAIGHT; EITHER; LEFT_ONLY or RIGHT_ONLY, where all of them hold to the other side; LEFT or
-            RIGHT, where some do not, or are not asked for.
-        spanned: trials within the span, these among them.
-        otherwise: trials within the span that fail, too, but in another way.
+        side: STRAIGHT; EITHER or APART; LEFT_ONLY or RIGHT_ONLY, where all of them hold to the other side;
+            LEFT or RIGHT, where some do not, or are not asked for.
+        spanned: trials within the span, these among them; of APART each side has a span of turn rates of
+            its own.
+        otherwise: (L, 2) index of the trials within the span that fail, too, but in another way.
         one_sided: how many of these trials hold to the other side.
     """
 
@@ -76,7 +81,7 @@ class Block:
     ways: NDArray[np.str_]
     side: str
     spanned: int
-    otherwise: int
+    otherwise: NDArray[np.int64]
     one_sided: int
 
     @property
@@ -111,7 +116,7 @@ def _ways(grid: Grid) -> NDArray[np.str_]:
     how = {
         HOLDS: "",
         STRAYS: STRAY,
-        MISSES_SPEED: np.where(grid.speed_error < 0, SLOW, FAST),
+        MISSES_SPEED: np.where(grid.speed_error_share < 0, SLOW, FAST),
         MISSES_TURN_RATE: np.where(side == 0, TURNS_AWAY, turns),
     }
     return np.choose(grid.outcomes, [how[outcome] for outcome in sorted(how)])
@@ -126,10 +131,11 @@ def _next(grid: Grid, ways: NDArray[np.str_], left: NDArray[np.bool_], least: fl
         cells = mixed
     if not len(cells):
         return None
-    own, span, one_sided = ways[tuple(cells.T)], _span(grid, cells), _held_to_the_other_side(grid, cells)
-    otherwise = span & ~grid.held & ~np.isin(ways, own)
+    own, one_sided = ways[tuple(cells.T)], _held_to_the_other_side(grid, cells)
     side = _side(grid, cells, alone=one_sided == len(cells))
-    return Block(cells, own, side, int(span.sum()), int(otherwise.sum()), one_sided)
+    span = _span(grid, cells, side)
+    otherwise = np.argwhere(span & ~grid.held & ~np.isin(ways, own))
+    return Block(cells, own, side, int(span.sum()), otherwise, one_sided)
 
 
 def _best(
@@ -181,12 +187,14 @@ def _worthiest(worths: NDArray[np.int64]) -> tuple[int, slice, slice]:
     return int(gains[last, band]), slice(int(start), int(last) + 1), slice(int(first[band]), int(end[band]))
 
 
-def _span(grid: Grid, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _span(grid: Grid, cells: NDArray[np.int64], side: str) -> NDArray[np.bool_]:
     """(V, W) the trials within the speeds and turn rates of some, on their side or sides."""
     speeds, turns = grid.speeds[cells[:, 0]], grid.turn_rates_deg[cells[:, 1]]
-    sides = np.isin(np.sign(grid.turn_rates_deg), np.sign(turns))
-    steep = np.abs(grid.turn_rates_deg)
-    turning = sides & (steep >= np.abs(turns).min()) & (steep <= np.abs(turns).max())
+    steep, signs = np.abs(grid.turn_rates_deg), np.sign(turns)
+    turning = np.zeros(len(steep), bool)
+    for sign in np.unique(signs):
+        own = np.abs(turns[signs == sign] if side == APART else turns)
+        turning |= (np.sign(grid.turn_rates_deg) == sign) & (steep >= own.min()) & (steep <= own.max())
     fast = (grid.speeds >= speeds.min()) & (grid.speeds <= speeds.max())
     return np.asarray(fast[:, None] & turning)
 
@@ -202,7 +210,9 @@ def _side(grid: Grid, cells: NDArray[np.int64], *, alone: bool) -> str:
     if not turns.any():
         return STRAIGHT
     if turns.min() != turns.max():
-        return EITHER
+        steep = np.abs(grid.turn_rates_deg[cells[:, 1]])
+        ends = np.array([steep.min(), steep.max()])
+        return EITHER if np.isin([*ends, *-ends], grid.turn_rates_deg).all() else APART
     if turns[0] > 0:
         return LEFT_ONLY if alone else LEFT
     return RIGHT_ONLY if alone else RIGHT

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
-from gmr.evaluation.failing_blocks import Block, failing_blocks
+from gmr.evaluation.failing_blocks import APART, Block, failing_blocks
 from gmr.evaluation.regions import EITHER, LEFT, LEFT_ONLY, RIGHT, RIGHT_ONLY, STRAIGHT, Grid, Region
 from gmr.evaluation.symptoms import symptom
-from gmr.evaluation.words import GAITS, circles, count, duration, gait_of, listing, span
+from gmr.evaluation.words import GAITS, circles, count, duration, gait_of, listing, span, switching
 
 __all__ = ["capture_sentences", "failure_sentences"]
 
@@ -26,9 +27,10 @@ def failure_sentences(grid: Grid) -> Iterator[str]:
     Every failing trial is counted once: in the sentence that names what is asked of it, or among the rest.
     """
     blocks = failing_blocks(grid)
-    for block in blocks:
+    for place, block in enumerate(blocks):
+        trials = _trials(block, blocks[:place], blocks[place + 1 :])
         yield (
-            f"It fails when {_movement(grid, block)} ({_trials(block)}): {_clips_there(grid, block)}, "
+            f"It fails when {_movement(grid, block)} ({trials}): {_clips_there(grid, block)}, "
             f"and the character {symptom(grid, block)}."
         )
     others = int((~grid.held).sum()) - sum(len(block.cells) for block in blocks)
@@ -39,33 +41,65 @@ def failure_sentences(grid: Grid) -> Iterator[str]:
 
 def _movement(grid: Grid, block: Block) -> str:
     speeds = grid.speeds[block.cells[:, 0]]
-    turns = np.abs(grid.turn_rates_deg[block.cells[:, 1]])
+    turns = grid.turn_rates_deg[block.cells[:, 1]]
     at = f"at {span(speeds.min(), speeds.max(), 'm/s')}"
+    if grid.switching is not None:
+        at += " while " + switching(*grid.switching)
     if block.side == STRAIGHT:
         return f"going straight {at}"
-    by = span(turns.min(), turns.max(), "degrees/s")
-    return f"turning {block.side} by {by} {at}"
+    if block.side == APART:
+        left, right = turns[turns > 0], -turns[turns < 0]
+        each = f"left by {_ends(left)} and right by {_ends(right)} degrees/s"
+        return f"turning {each} {at}"
+    return f"turning {block.side} by {_ends(np.abs(turns))} degrees/s {at}"
 
 
-def _trials(block: Block) -> str:
+def _ends(turns: NDArray[np.float64]) -> str:
+    low, high = turns.min(), turns.max()
+    return f"{low:g}" if low == high else f"{low:g} to {high:g}"
+
+
+def _trials(block: Block, above: Sequence[Block], below: Sequence[Block]) -> str:
     """How many trials fail in this way, out of those within the speeds and turn rates that are named."""
     failing = len(block.cells)
     among = "" if failing == block.spanned else f" of {block.spanned}"
     trials = "trial" if failing == block.spanned == 1 else "trials"
     other = {LEFT: "right", RIGHT: "left"}.get(block.side)
-    alone = (
-        f", {block.one_sided} of them not to the {other}" if other and 2 * block.one_sided >= failing else ""
-    )
-    more = f", {block.otherwise} more in other ways" if block.otherwise else ""
-    return f"{failing}{among} {trials}{alone}{more}"
+    alone = ""
+    if other and 2 * block.one_sided >= failing:
+        alone = f"; for {block.one_sided} of the {failing} the same turn to the {other} holds"
+    return f"{failing}{among} {trials}{_otherwise(block, above, below)}{alone}"
+
+
+def _otherwise(block: Block, above: Sequence[Block], below: Sequence[Block]) -> str:
+    """How many others within the span fail, and how many of these other sentences tell."""
+    others = len(block.otherwise)
+    if not others:
+        return ""
+    told = {"above": _among(block.otherwise, above), "below": _among(block.otherwise, below)}
+    more, elsewhere = f", {others} more in other ways", sum(told.values())
+    if not elsewhere:
+        return more
+    some = "" if elsewhere == others else f"{elsewhere} of them "
+    return f"{more}, {some}as told {listing([place for place, number in told.items() if number])}"
+
+
+def _among(cells: NDArray[np.int64], blocks: Sequence[Block]) -> int:
+    """How many trials some blocks tell."""
+    told = {tuple(cell) for block in blocks for cell in block.cells.tolist()}
+    return sum(tuple(cell) in told for cell in cells.tolist())
 
 
 def _clips_there(grid: Grid, block: Block) -> str:
     seconds = grid.seconds[tuple(block.cells.T)]
+    like = "like that"
+    if grid.switching is not None:
+        speeds = grid.speeds[block.cells[:, 0]]
+        like += f" at {span(speeds.min(), speeds.max(), 'm/s')}"
     empty = int((seconds < grid.limits.covered).sum())
     if seconds.sum() < 0.05:
-        return "no clip moves like that"
-    total = f"{duration(float(seconds.sum()))} of the clips move like that"
+        return f"no clip moves {like}"
+    total = f"{duration(float(seconds.sum()))} of the clips move {like}"
     if empty == 0:
         return total
     if empty == len(seconds):

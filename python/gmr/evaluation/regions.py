@@ -83,6 +83,10 @@ class Grid:
             to the next ones of the grid.
         limits: what "holds" means.
         timed: whether the character was steered to where the path has it at each time.
+        switching: the other speed, m/s, and the seconds from switch to switch, where the trials switch from
+            their speed to it and back; None where they keep their speed. Then ``speed_error_share`` is at the
+            one of the two speeds that is missed by more, but ``speed_error`` is in the mean of both, where
+            one may make up for the other.
     """
 
     speeds: NDArray[np.float64]
@@ -95,6 +99,7 @@ class Grid:
     seconds: NDArray[np.float64]
     limits: Limits
     timed: bool
+    switching: tuple[float, float] | None = None
 
     @classmethod
     def of(cls, trials: Table, coverage: Table, limits: Limits) -> Grid:
@@ -112,9 +117,18 @@ class Grid:
         share, turn_rate_error = laid_out("speed_error_share"), laid_out("turn_rate_error_deg")
         timed = not np.any(trials["tracking"] == "velocity")
         held = limits.held(share, turn_rate_error, offset, timed)
-        seconds = _seconds_in_cells(coverage, speeds, turn_rates)
         return cls(
-            speeds, turn_rates, offset, speed_error, share, turn_rate_error, held, seconds, limits, timed
+            speeds=speeds,
+            turn_rates_deg=turn_rates,
+            offset=offset,
+            speed_error=speed_error,
+            speed_error_share=share,
+            turn_rate_error_deg=turn_rate_error,
+            held=held,
+            seconds=_seconds_in_cells(coverage, speeds, turn_rates),
+            limits=limits,
+            timed=timed,
+            switching=_switching(trials),
         )
 
     @property
@@ -145,6 +159,13 @@ def judged(trials: Table) -> NDArray[np.bool_]:
         present = trials[column][chosen]
         chosen &= trials[column] == (usual if np.any(present == usual) else present[0])
     return chosen
+
+
+def _switching(trials: Table) -> tuple[float, float] | None:
+    """The other speed and the seconds from switch to switch, of trials that are all of one scenario."""
+    if "switched_speed" not in trials or not len(trials) or np.isnan(trials["switched_speed"][0]):
+        return None
+    return float(trials["switched_speed"][0]), float(trials["switch_every"][0])
 
 
 def _seconds_in_cells(

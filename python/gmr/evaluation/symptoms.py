@@ -18,7 +18,11 @@ SOME: Final = 0.1
 
 
 def symptom(grid: Grid, block: Block) -> str:
-    """What goes wrong in the trials of a block, as the rest of "the character ..."."""
+    """What goes wrong in the trials of a block, as the rest of "the character ...".
+
+    Of trials that switch speeds it is their error at the speed that they miss by more, as a share of it, for
+    this is what they fail by.
+    """
     if block.way == MIXED:
         return _each_way(grid, block)
     if block.way == STRAY:
@@ -31,9 +35,16 @@ def _wrong(grid: Grid, block: Block) -> str:
     """How far it is off; where one turn rate is asked for, which it turns at."""
     reached = _reached(grid, block)
     if reached is not None and reached.min() >= 1:
-        return f"turns at {_typical(reached, 'degrees/s', 0.0, 'instead')}"
+        return f"turns at {_typical(reached, ' degrees/s', 0.0, 'instead')}"
     verb, how = block.way.split(" ", 1)
-    return f"{verb} {_typical(*_missed_by(grid, block.cells, block.way), how)}"
+    told = f"{verb} {_typical(*_missed_by(grid, block.cells, block.way), how)}"
+    return f"{told}{_at_which(grid, block.way)}"
+
+
+def _at_which(grid: Grid, way: str) -> str:
+    """At which speed trials go too slowly or too fast that are asked for two."""
+    two = way in (SLOW, FAST) and grid.switching is not None
+    return " at the speed of the two that it misses by more" if two else ""
 
 
 def _reached(grid: Grid, block: Block) -> NDArray[np.float64] | None:
@@ -51,11 +62,12 @@ def _each_way(grid: Grid, block: Block) -> str:
     parts: list[str] = []
     for way, trials in most_first:
         error, unit, limit = _missed_by(grid, block.cells[block.ways == way], way)
-        by = f"{beyond(float(np.median(error)), limit)} {unit}"
+        by = f"{beyond(float(np.median(error)), limit)}{unit}"
+        told = f"{way}{_at_which(grid, way)}"
         if not parts:
-            parts.append(f"{way} in {trials} of them (by {by}{' in the median' if trials > 1 else ''})")
+            parts.append(f"{told} in {trials} of them (by {by}{' in the median' if trials > 1 else ''})")
         else:
-            parts.append(f"{way} in {trials} (by {by})")
+            parts.append(f"{told} in {trials} (by {by})")
     return listing(parts)
 
 
@@ -63,10 +75,12 @@ def _missed_by(grid: Grid, cells: NDArray[np.int64], way: str) -> tuple[NDArray[
     """How far trials that fail in a way are off, in which unit, and the limit where it has that unit."""
     at = tuple(cells.T)
     if way == STRAY:
-        return grid.offset[at], "m", grid.limits.offset
+        return grid.offset[at], " m", grid.limits.offset
+    if way in (SLOW, FAST) and grid.switching is not None:
+        return 100 * np.abs(grid.speed_error_share[at]), "%", 100 * grid.limits.speed
     if way in (SLOW, FAST):
-        return np.abs(grid.speed_error[at]), "m/s", 0.0
-    return np.abs(grid.turn_rate_error_deg[at]), "degrees/s", grid.limits.turn_rate_deg
+        return np.abs(grid.speed_error[at]), " m/s", 0.0
+    return np.abs(grid.turn_rate_error_deg[at]), " degrees/s", grid.limits.turn_rate_deg
 
 
 def _typical(values: NDArray[np.float64], unit: str, limit: float, how: str) -> str:
@@ -75,8 +89,9 @@ def _typical(values: NDArray[np.float64], unit: str, limit: float, how: str) -> 
     low, middle, high = (
         beyond(float(value), limit) for value in (values.min(), np.median(values), values.max())
     )
-    typical = f"{middle} {unit} {how}"
-    return typical if low == high else f"{typical} in the median ({low} to {high})"
+    typical = f"{middle}{unit} {how}"
+    ends = f"{low} to {high}{unit if unit == '%' else ''}"
+    return typical if low == high else f"{typical} in the median ({ends})"
 
 
 def _missed_too(block: Block, what: str, excess: NDArray[np.float64]) -> str:

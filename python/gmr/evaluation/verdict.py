@@ -22,7 +22,7 @@ from gmr.evaluation.regions import Grid, Limits, failures, held_rectangle
 from gmr.evaluation.result import Verdict
 from gmr.evaluation.scenario_sentences import scenario_sentences
 from gmr.evaluation.seen_sentences import seen_sentences
-from gmr.evaluation.words import STANDS, count, duration, listing, percent, some_of, span, turning
+from gmr.evaluation.words import STANDS, count, duration, listing, percent, some_of, span, switching, turning
 from gmr.table import Table
 
 __all__ = ["verdict", "what_counts"]
@@ -88,21 +88,27 @@ def _headline(grid: Grid) -> str:
     best = held_rectangle(grid)
     if best is None:
         return f"{DOES} none of {count(trials, 'trial')}: it cannot follow any path of this grid."
-    where = f"{turning(*best.turn_rates_deg)} at {span(*best.speeds, 'm/s')}"
+    where = f"{turning(*best.turn_rates_deg)} at {span(*best.speeds, 'm/s')}{_while(grid)}"
     if held == trials:
         return f"{DOES} {'the one trial' if trials == 1 else f'all {trials} trials'}: {where}."
     share = percent(held / trials)
     return f"{DOES} {held} of {count(trials, 'trial')} ({share}); it is good for {where}."
 
 
+def _while(grid: Grid) -> str:
+    """What else the trials are asked for, where they switch speeds."""
+    return "" if grid.switching is None else f" while {switching(*grid.switching)}"
+
+
 def what_counts(grid: Grid) -> str:
     """When a trial is said to be done as asked."""
     limits = grid.limits
     near = f"the character is within {limits.offset:g} m of where the planned path has it at that time, its"
+    speed = "the speed" if grid.switching is None else "each of the two speeds"
     whose = near if grid.timed else "the character's"
     return (
         f"What is asked counts as done when, on average, {whose} speed is within "
-        f"{percent(limits.speed)} of the speed asked for, and its turn rate within "
+        f"{percent(limits.speed)} of {speed} asked for, and its turn rate within "
         f"{limits.turn_rate_deg:g} degrees/s."
     )
 
@@ -112,13 +118,14 @@ def _straight_sentences(grid: Grid) -> Iterator[str]:
     if not len(column):
         return
     holds = grid.held[:, column[0]]
+    ahead = f"Straight ahead{_while(grid)} it keeps"
     if holds.all():
-        yield f"Straight ahead it keeps {span(grid.speeds[0], grid.speeds[-1], 'm/s')} throughout."
+        yield f"{ahead} {span(grid.speeds[0], grid.speeds[-1], 'm/s')} throughout."
     elif not holds.any():
-        yield "Straight ahead it keeps no speed of the grid."
+        yield f"{ahead} no speed of the grid."
     else:
         kept, lost = _speeds(grid.speeds[holds]), _speeds(grid.speeds[~holds])
-        yield f"Straight ahead it keeps {kept} m/s, but not {lost} m/s."
+        yield f"{ahead} {kept} m/s, but not {lost} m/s."
     bridged = grid.speeds[holds & (grid.seconds[:, column[0]] < grid.limits.covered)]
     if len(bridged):
         yield (

@@ -20,6 +20,7 @@ __all__ = [
     "percent",
     "some_of",
     "span",
+    "switching",
     "turning",
 ]
 
@@ -91,6 +92,11 @@ def duration(seconds: float) -> str:
 def span(low: float, high: float, unit: str) -> str:
     """A range of figures with its unit, or the one figure that it is."""
     return f"{low:g} {unit}" if low == high else f"{low:g} to {high:g} {unit}"
+
+
+def switching(speed: float, every: float) -> str:
+    """What trials do that go on at another speed every so many seconds, beside what else they do."""
+    return f"switching to {speed:g} m/s and back every {every:g} s"
 
 
 def turning(low_deg: float, high_deg: float) -> str:

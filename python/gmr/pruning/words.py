@@ -75,10 +75,11 @@ def _lossless(of: Pruning) -> str:
     clips = len(whole.ranges)
     if not cut and len(kept) == clips:
         return f"No half second of the {duration(whole.seconds)} can go without a change to a trial."
+    parts = f"parts of {len(cut)}" if cut else "no part of another"
     return (
         f"No trial needs {duration(whole.seconds - left.seconds)} of {duration(whole.seconds)} "
         f"({percent(1 - left.seconds / whole.seconds)}): {count(clips - len(kept), 'clip')} of "
-        f"{clips} as a whole, and parts of {len(cut) or 'none'}. Without them "
+        f"{clips} as a whole, and {parts}. Without them "
         f"{count(of.outcomes.score.runs, 'trial')} were run again, and all are the same in every bit."
     )
 

@@ -41,18 +41,21 @@ def holds_map(evaluation: Evaluation, scenario: str, tracking: str, *, columns: 
     return Figure(
         name=f"trial_map_holds{set_suffix(scenario, tracking)}",
         title="Where it does what it is asked" + set_words(scenario, tracking),
-        sentence=_sentence(outcome, grid.limits, timed=tracking == "time"),
+        sentence=_sentence(outcome, grid, timed=tracking == "time"),
         chart=_chart(len(grid.speeds), columns),
         data={"trials": drawn},
     )
 
 
-def _sentence(outcome: NDArray[np.int64], limits: Limits, *, timed: bool) -> str:
+def _sentence(outcome: NDArray[np.int64], grid: Grid, *, timed: bool) -> str:
     number = np.bincount(outcome, minlength=len(_OUTCOMES))
+    if not number[HOLDS]:
+        return f"No trial goes as asked. {_failing(number)}"
+    limits, speed = grid.limits, "the speed" if grid.switching is None else "each of the two speeds"
     path = [f"within {limits.offset:g} m of the plan"] if timed else []
     within = [
         *path,
-        f"within {percent(limits.speed)} of the speed",
+        f"within {percent(limits.speed)} of {speed}",
         f"within {limits.turn_rate_deg:g} degrees/s of the turn rate",
     ]
     goes = f"{count(int(number[HOLDS]), 'trial goes', 'trials go')} as asked: on average {listing(within)}."

@@ -210,8 +210,9 @@ class _Cells:
         turn = np.array([simulation.trials[place].turn_rate_deg for place in chosen])
         training = _checkerboard(speed, turn)
         if min(training.sum(), (~training).sum()) < 2:
+            counted = "trial" if len(chosen) == 1 else "trials"
             raise ValueError(
-                f"{len(chosen)} constant trials cannot be split; evaluate at least four, "
+                f"{len(chosen)} constant {counted} cannot be split; evaluate at least four, "
                 "in the constant scenario"
             )
         profiles = tuple(simulation.profiles[place] for place in chosen)
