@@ -27,7 +27,7 @@ SENTENCE = re.compile(
     r"It fails when (?:going straight|turning (?P<side>[^0-9]+) by (?P<turns>[0-9. to]+)"
     r"(?: and right by (?P<right>[0-9. to]+))? degrees/s)"
     r" at (?P<speeds>[^m]+) m/s \((?P<count>\d+)(?: of (?P<among>\d+))? trials?"
-    r"(?:, (?P<otherwise>\d+) more in other ways"
+    r"(?:, (?P<otherwise>\d+) more in (?:other ways|another way)"
     r"(?:, (?:(?P<told>\d+) of them )?as told (?P<places>above|below|above and below))?)?"
     r"(?:; for (?P<alone>\d+) of the (?P=count) the same turn to the (?P<other>left|right) holds)?"
     r"\): (?P<clips>.*), and the character (?P<symptom>.*)\."

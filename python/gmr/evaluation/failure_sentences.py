@@ -77,7 +77,8 @@ def _otherwise(block: Block, above: Sequence[Block], below: Sequence[Block]) -> 
     if not others:
         return ""
     told = {"above": _among(block.otherwise, above), "below": _among(block.otherwise, below)}
-    more, elsewhere = f", {others} more in other ways", sum(told.values())
+    ways = "in another way" if others == 1 else "in other ways"
+    more, elsewhere = f", {others} more {ways}", sum(told.values())
     if not elsewhere:
         return more
     some = "" if elsewhere == others else f"{elsewhere} of them "
