@@ -236,3 +236,45 @@ def test_a_moved_clip_says_so() -> None:
     assert candidate.how == "turned to +Z up, moved to the same ground, 0.8 times as fast"
     assert candidate.name == "b_turned_moved_x0.8.bvh"
     assert not Candidate("a/b.bvh", moved=True).whole
+
+
+@pytest.mark.parametrize("takes_up", ["+Y", "+Z", "+X"])
+@pytest.mark.parametrize("useful_up", ["+Y", "+Z"])
+def test_clips_of_an_archive_of_two_axes_stand_each_by_their_own(
+    upright: Completion, takes_up: str, useful_up: str
+) -> None:
+    upright_ones = {f"a{number}.bvh": walker(3, 0.1 + number / 100) for number in range(3)}
+    others = with_up({f"b{number}.bvh": walker(3, 0.2 + number / 100) for number in range(3)}, "+Z")
+    archive = {**upright_ones, **others, **with_up(ARCHIVE, useful_up)}
+    found = complete_from(with_up(TAKES, takes_up), archive, source="archive", **ASKED)
+    assert same(found, upright)
+    needed = takes_up if takes_up != useful_up else ""
+    assert {(choice.candidate.turned, choice.candidate.moved) for choice in found.choices} == {
+        (needed, False)
+    }
+    expected = (
+        f"archive: 5 of its 8 files have {useful_up} up, those of the dataset {takes_up}: "
+        f"what is chosen of them is turned to {takes_up} up."
+    )
+    assert [note for note in found.noticed if " up" in note] == ([expected] if needed else [])
+
+
+def test_a_body_that_lies_is_turned_as_the_clips_around_it(upright: Completion) -> None:
+    lies = turned(walker(3, 0.1), "+Y", "-Y")
+    archive = {**ARCHIVE, "a.bvh": walker(3, 0.2), "lies.bvh": lies}
+    found = complete_from(TAKES, with_up(archive, "+Z"), source="archive", **ASKED)
+    assert same(found, upright)
+    assert any("In 1 of 4 clips ('lies.bvh')" in note for note in found.noticed)
+    assert "archive: Its files have +Z up, those of the dataset +Y: what is chosen is turned to +Y up." in (
+        found.noticed
+    )
+
+
+def test_a_moved_clip_keeps_its_channels(tmp_path: Path) -> None:
+    gmr.write(ARCHIVE["left.bvh"], tmp_path / "a.bvh")
+    read = gmr.read(tmp_path / "a.bvh")
+    higher = raised(read, "+Y", 1.0)
+    assert higher.layout == read.layout
+    gmr.write(higher, tmp_path / "b.bvh")
+    back = gmr.read(tmp_path / "b.bvh").positions(dtype=np.float64)
+    np.testing.assert_allclose(back - (0.0, 1.0, 0.0), read.positions(dtype=np.float64), atol=1e-4)

@@ -14,7 +14,7 @@ from typing import Any
 
 from gmr.completion.candidates import Candidate, on_skeleton, variants
 from gmr.completion.choosing import joined
-from gmr.completion.places import Place
+from gmr.completion.places import Place, placed
 from gmr.completion.tempo import Rows, rows_of
 from gmr.completion.up import standing
 from gmr.errors import DatasetError, GmrError
@@ -121,7 +121,8 @@ class Offer:
             return str(error)
         self.refused |= database.excluded
         if place is not None:
-            self.notes += tuple(note for note in database.notes if not place.foreign(note))
+            own = (note for note in database.notes if not place.foreign(note))
+            self.notes = tuple(dict.fromkeys((*self.notes, *own)))
             self.places |= dict.fromkeys(clips, place)
         self.rows |= _rows(database, clips, ways, bool(kind.whole.mirrored.any()))
         return ""
@@ -153,11 +154,12 @@ def offer_of(
     layer = _Layer(like) if lay else None
     usable, laid, refused = on_skeleton(others, kind.whole.skeleton, layer)
     own = {name: motion for name, motion in usable.items() if name not in laid}
-    place = _place(kind, own, dataset)
     offer = Offer(dataset.up, {**usable, **made}, refused=refused)
-    turned, moved = (place.turned, bool(place.lift)) if place else ("", False)
     troubles = [
-        offer.add(kind, own, partial(variants, laid=False, turned=turned, moved=moved), place),
+        *(
+            offer.add(kind, clips, _as_placed(place), place)
+            for clips, place in placed(own, dataset, kind.seen)
+        ),
         offer.add(
             kind, {name: usable[name] for name in usable if name in laid}, partial(variants, laid=True)
         ),
@@ -192,12 +194,10 @@ def _rows(
     return rows
 
 
-def _place(kind: Kind, motions: Mapping[str, Motion], dataset: Survey) -> Place | None:
-    """How some clips stand beside the dataset; None where that is not known."""
-    try:
-        return Place(kind.seen(motions), dataset) if motions else None
-    except DatasetError:
-        return None  # why none of them can be used is told when they are added
+def _as_placed(place: Place | None) -> Callable[..., Iterable[Candidate]]:
+    """The candidates of a clip that has the dataset's skeleton by itself."""
+    turned, moved = (place.turned, bool(place.lift)) if place else ("", False)
+    return partial(variants, laid=False, turned=turned, moved=moved)
 
 
 def _as_made(name: str, *, mirror: bool) -> Iterator[Candidate]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from gmr.body.measures import turned_from_upright, up_axis
@@ -12,7 +14,7 @@ from gmr.matching.survey import Survey
 from gmr.motion import Motion
 from gmr.tpose import leading_rest_frames
 
-__all__ = ["mirrored_upright", "raised", "standing", "turned_up"]
+__all__ = ["mirrored_upright", "own_axes", "raised", "standing", "turned_up"]
 
 
 def turned_up(motion: Motion, up: str, to: str) -> Motion:
@@ -55,10 +57,17 @@ def mirrored_upright(motion: Motion, up: str) -> Motion:
 
 def standing(seen: Survey) -> str:
     """The first clip that stands along the up axis of all of them, by name; the first one where none does."""
+    return next((name for name, axis in _axes(seen) if axis == seen.up), next(iter(seen.samples)))
+
+
+def own_axes(seen: Survey) -> dict[str, str]:
+    """The axis along which each clip stands by itself, by name."""
+    return dict(_axes(seen))
+
+
+def _axes(seen: Survey) -> Iterator[tuple[str, str]]:
     for name, some in seen.samples.items():
-        if up_axis(np.asarray(some.positions(dtype=np.float64)), seen.joints.roles) == seen.up:
-            return name
-    return next(iter(seen.samples))
+        yield name, up_axis(np.asarray(some.positions(dtype=np.float64)), seen.joints.roles)
 
 
 def _whole_layout(motion: Motion) -> ChannelLayout | None:
