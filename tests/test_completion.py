@@ -142,6 +142,7 @@ def test_the_command_does_it_all(tmp_path: Path, capsys: pytest.CaptureFixture[s
     )  # fmt: skip
     said = capsys.readouterr()
     found = json.loads(said.out)
+    assert set(found["failed"]) == {"broken.bvh"}
     assert code == 1, "a file was left out"
     assert "broken.bvh" in said.err
     assert found["page"] == str(out / "index.html")

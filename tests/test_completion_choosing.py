@@ -472,6 +472,7 @@ def test_clips_that_are_refused_are_told_like_files_that_are_left_out(
     told = json.loads(said.out)
     assert told["not_done"]["--complete-from"].startswith("no clip of archive can be used: another skeleton")
     assert set(told["completed"]["refused"]) == {"a.bvh", "b.bvh"}
+    assert set(told["completed"]["failed"]) == {str(archive / "broken.bvh")}
     lines = said.err.splitlines()
     assert len(lines) == 3
     assert "broken.bvh" in lines[0]
@@ -480,9 +481,13 @@ def test_clips_that_are_refused_are_told_like_files_that_are_left_out(
         "gmr: --complete-from came to nothing, all else is done: no clip of archive can"
     )
     complete = ["complete", str(takes), "--from", str(archive), "-o", str(tmp_path / "b")]
+    (takes / "cut.bvh").write_text("HIERARCHY\n")
     assert finished(command, [*complete, *asked]) == 1
-    again = capsys.readouterr().err.splitlines()
-    assert again == lines[:2]
+    again = capsys.readouterr()
+    assert [line for line in again.err.splitlines() if "cut.bvh" not in line] == lines[:2]
+    failed = json.loads(again.out)["failed"]
+    assert set(failed) == {"cut.bvh", str(archive / "broken.bvh")}
+    assert failed[str(archive / "broken.bvh")] == told["completed"]["failed"][str(archive / "broken.bvh")]
 
 
 def test_nothing_is_said_to_be_undone_where_some_clips_can_be_used(

@@ -203,7 +203,7 @@ class Completed:
 
     def summary(self) -> dict[str, Any]:
         """For a machine: plain values."""
-        return {**completion_summary(self.found), "folder": str(self.folder)}
+        return {**completion_summary(self.found, self.failed), "folder": str(self.folder)}
 
 
 def check_completing(completing: Completing, phases: Phases) -> None:
@@ -287,8 +287,8 @@ def earlier_clips(found: Completion, folder: Path) -> Iterator[str]:
         )
 
 
-def completion_summary(found: Completion) -> dict[str, Any]:
-    """For a machine: plain values."""
+def completion_summary(found: Completion, failed: Mapping[str, str]) -> dict[str, Any]:
+    """For a machine: plain values; ``failed``: files that cannot be used, and why."""
     from gmr.completion.words import headline, sentences
 
     return {
@@ -299,5 +299,6 @@ def completion_summary(found: Completion) -> dict[str, Any]:
         "clips": plain_rows(found.clips),
         "chosen": plain_rows(found.chosen),
         "refused": dict(found.refused),
+        "failed": dict(failed),
         "not_made": [{"speed": a.speed, "turn_rate_deg": a.turn_rate_deg} for a in found.not_made],
     }

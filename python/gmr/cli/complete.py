@@ -155,9 +155,8 @@ def complete(
             written = write_completion(found, out, source=source, progress=phases.tell)
     failed |= found.before.failed
     if as_json:
-        click.echo(
-            json.dumps({**completion_summary(found), "page": str(written)}, indent=2, ensure_ascii=False)
-        )
+        summary = {**completion_summary(found, failed), "page": str(written)}
+        click.echo(json.dumps(summary, indent=2, ensure_ascii=False))
     else:
         click.echo("\n".join([completion_words(found), "", f"Page: {written}"]))
     for sentence in (*left_out(failed), *refused_clips(found), *earlier_clips(found, out)):

@@ -35,6 +35,7 @@ class Candidate:
         made: whether it was synthesised.
         laid: whether it was laid on the dataset's skeleton from another one.
         turned: the axis that it was turned to have up, as the dataset has; "" where it has so by itself.
+        moved: whether it was moved up or down, to the height of the dataset's ground.
     """
 
     source: str
@@ -43,6 +44,7 @@ class Candidate:
     made: bool = False
     laid: bool = False
     turned: str = ""
+    moved: bool = False
 
     @property
     def how(self) -> str:
@@ -52,6 +54,7 @@ class Candidate:
         parts = [
             *(["laid on this skeleton"] if self.laid else []),
             *([f"turned to {self.turned} up"] if self.turned else []),
+            *(["moved to the same ground"] if self.moved else []),
             *(["mirrored"] if self.mirrored else []),
             *([f"{self.factor:g} times as fast"] if self.factor != 1 else []),
         ]
@@ -60,7 +63,7 @@ class Candidate:
     @property
     def whole(self) -> bool:
         """Whether it is a file of the folder, unchanged."""
-        return not (self.made or self.laid or self.turned or self.mirrored) and self.factor == 1
+        return not (self.made or self.laid or self.turned or self.moved or self.mirrored) and self.factor == 1
 
     @property
     def name(self) -> str:
@@ -68,7 +71,7 @@ class Candidate:
         path = PurePosixPath(self.source)
         if self.whole or self.made:
             return path.name
-        done = "".join(f"_{what}" for what in ("laid", "turned", "mirrored") if getattr(self, what))
+        done = "".join(f"_{what}" for what in ("laid", "turned", "moved", "mirrored") if getattr(self, what))
         pace = f"_x{self.factor:g}" if self.factor != 1 else ""
         return f"{path.stem}{done}{pace}.bvh"
 
@@ -76,7 +79,8 @@ class Candidate:
         """The clip, from the motion of its source; a converter's T-pose stays only in a file left whole.
 
         Args:
-            motion: on the dataset's skeleton, and turned to its up axis where that was to be done.
+            motion: on the dataset's skeleton, and turned to its up axis and moved to its ground where that
+                was to be done.
             up: the dataset's up axis.
         """
         if self.whole:
@@ -86,11 +90,13 @@ class Candidate:
         return replace(seen, frame_time=seen.frame_time / self.factor) if self.factor != 1 else seen
 
 
-def variants(source: str, *, mirror: bool, laid: bool, turned: str = "") -> Iterator[Candidate]:
+def variants(
+    source: str, *, mirror: bool, laid: bool, turned: str = "", moved: bool = False
+) -> Iterator[Candidate]:
     """What can be made of one clip of the folder; ``mirror``: also its mirror image."""
     for mirrored in (False, True) if mirror else (False,):
         for factor in FACTORS:
-            yield Candidate(source, mirrored, factor, laid=laid, turned=turned)
+            yield Candidate(source, mirrored, factor, laid=laid, turned=turned, moved=moved)
 
 
 def on_skeleton(

@@ -200,7 +200,7 @@ def _like(before: Evaluation, motions: Mapping[str, Motion], settings: Mapping[s
     assert before.simulation is not None
     usable = {name: motion for name, motion in motions.items() if name not in before.failed}
     reading = {name: settings.get(name) for name in ("names", "unit")}
-    return Kind(before.simulation.database, usable, reading).stands(usable)[1]
+    return Kind(before.simulation.database, usable, reading).like()
 
 
 def completed_name(dataset: str) -> str:

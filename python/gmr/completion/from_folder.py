@@ -56,7 +56,8 @@ def complete_from(
 ) -> Completion:
     """Complete a dataset from other clips: as they are, mirrored, or played 0.8 to 1.25 times as fast.
 
-    Clips with another up axis than the dataset are turned to the dataset's, for a folder has one.
+    Clips with another up axis than the dataset are turned to the dataset's, and clips whose ground lies
+    higher or lower are moved to its ground, for a folder has one of each.
 
     The clips are ranked and tried with the features scaled as in the dataset by itself; the second evaluation
     scales them anew over both, as whoever evaluates the completed dataset will see it.
@@ -188,7 +189,8 @@ class _Hunt:
         )
         self.tell("choosing", len(named), len(named))
         chosen = {choice.name: clips[choice.name] for choice in choices}
-        return _Found(before, choices, chosen, offer.refused, offer.notes)
+        notes = offer.told(choice.candidate for choice in choices)
+        return _Found(before, choices, chosen, offer.refused, notes)
 
     def _listed(
         self, offer: Offer, log: TrialLog, failing: NDArray[np.intp], at_most: float | None

@@ -1,7 +1,8 @@
 """What there is to choose from: clips of another folder as they can stand beside the dataset, and made ones.
 
-A folder has one skeleton and one up axis for all its files. So clips with other joints are laid on the
-dataset's skeleton or refused, and clips with another up axis are turned to the dataset's.
+A folder has one skeleton, one up axis and one ground for all its files. So clips with other joints are laid
+on the dataset's skeleton or refused, clips with another up axis are turned to the dataset's, and clips whose
+ground lies higher or lower are moved to its ground.
 """
 
 from __future__ import annotations
@@ -13,12 +14,13 @@ from typing import Any
 
 from gmr.completion.candidates import Candidate, on_skeleton, variants
 from gmr.completion.choosing import joined
+from gmr.completion.places import Place, placed
 from gmr.completion.tempo import Rows, rows_of
-from gmr.completion.up import standing, turned_up
+from gmr.completion.up import standing
 from gmr.errors import DatasetError, GmrError
 from gmr.evaluation.words import count
 from gmr.matching.database import Database
-from gmr.matching.survey import survey
+from gmr.matching.survey import Survey, survey
 from gmr.motion import Motion
 
 __all__ = ["Kind", "Offer", "offer_of"]
@@ -49,10 +51,13 @@ class Kind:
             **self.reading,
         )
 
-    def stands(self, motions: Mapping[str, Motion]) -> tuple[str, Motion]:
-        """The up axis of some clips together, and one of them that stands along it."""
-        seen = survey(motions, self.whole.schema.span, **self.reading)
-        return seen.up, motions[standing(seen)]
+    def seen(self, motions: Mapping[str, Motion]) -> Survey:
+        """What holds for some clips together."""
+        return survey(motions, self.whole.schema.span, **self.reading)
+
+    def like(self) -> Motion:
+        """A clip of the dataset that stands along its up axis."""
+        return self.motions[standing(self.seen(self.motions))]
 
 
 @dataclass(eq=False)
@@ -63,7 +68,7 @@ class Offer:
         up: the dataset's up axis.
         motions: by name: the clips of the other folder that have the dataset's skeleton, or were laid on it,
             and made clips.
-        came_up: the up axis of those that have it by themselves.
+        places: how clips that were not laid on the skeleton stand, by name.
         rows: the frames of each candidate.
         refused: clips that cannot be used, and why.
         notes: what was noticed about the other folder, in sentences.
@@ -71,7 +76,7 @@ class Offer:
 
     up: str
     motions: dict[str, Motion] = field(default_factory=dict)
-    came_up: str = "+Y"
+    places: dict[str, Place] = field(default_factory=dict)
     rows: dict[Candidate, Rows] = field(default_factory=dict)
     refused: dict[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
@@ -79,15 +84,22 @@ class Offer:
     def clip(self, candidate: Candidate) -> Motion:
         """The clip that is added where a candidate is chosen."""
         motion = self.motions[candidate.source]
-        upright = turned_up(motion, self.came_up, candidate.turned) if candidate.turned else motion
-        return candidate.of(upright, self.up)
+        if candidate.turned or candidate.moved:
+            motion = self.places[candidate.source].put(candidate.source, motion)
+        return candidate.of(motion, self.up)
+
+    def told(self, chosen: Iterable[Candidate]) -> tuple[str, ...]:
+        """What was noticed about the other folder and done with what was chosen, in sentences."""
+        put = {candidate.source for candidate in chosen if candidate.turned or candidate.moved}
+        places = {id(place): place for place in self.places.values()}
+        return (*self.notes, *(note for place in places.values() for note in place.told(put)))
 
     def add(
         self,
         kind: Kind,
         clips: Mapping[str, Motion],
         ways: Callable[..., Iterable[Candidate]],
-        told: bool = False,
+        place: Place | None = None,
     ) -> str:
         """Take up clips of one up axis; those that cannot be used are refused.
 
@@ -95,7 +107,7 @@ class Offer:
             kind: what they have to stand beside.
             clips: by name.
             ways: the candidates of a clip, by its name and whether it can be mirrored.
-            told: also take up what is noticed about them.
+            place: how they stand; with it, also what is noticed about them is taken up.
 
         Returns:
             Why none of them can be used; "" where some can.
@@ -108,7 +120,10 @@ class Offer:
             self.refused |= dict.fromkeys(clips, str(error))
             return str(error)
         self.refused |= database.excluded
-        self.notes += database.notes if told else ()
+        if place is not None:
+            own = (note for note in database.notes if not place.foreign(note))
+            self.notes = tuple(dict.fromkeys((*self.notes, *own)))
+            self.places |= dict.fromkeys(clips, place)
         self.rows |= _rows(database, clips, ways, bool(kind.whole.mirrored.any()))
         return ""
 
@@ -133,16 +148,18 @@ def offer_of(
     Raises:
         DatasetError: no clip of the other folder can be used, and nothing else competes; it says why.
     """
-    up, like = kind.stands(kind.motions)
+    dataset = kind.seen(kind.motions)
+    like = kind.motions[standing(dataset)]
     made = make(like)
     layer = _Layer(like) if lay else None
     usable, laid, refused = on_skeleton(others, kind.whole.skeleton, layer)
     own = {name: motion for name, motion in usable.items() if name not in laid}
-    came_up = _up_of(kind, own, up)
-    offer = Offer(up, {**usable, **made}, came_up, refused=refused)
-    turned = up if came_up != up else ""
+    offer = Offer(dataset.up, {**usable, **made}, refused=refused)
     troubles = [
-        offer.add(kind, own, partial(variants, laid=False, turned=turned), told=True),
+        *(
+            offer.add(kind, clips, _as_placed(place), place)
+            for clips, place in placed(own, dataset, kind.seen)
+        ),
         offer.add(
             kind, {name: usable[name] for name in usable if name in laid}, partial(variants, laid=True)
         ),
@@ -151,10 +168,6 @@ def offer_of(
     if not offer.rows and any(troubles):
         raise DatasetError(f"no clip of {source} can be used: {next(filter(None, troubles))}")
     offer.notes += tuple(layer.notes()) if layer else ()
-    if turned:
-        offer.notes += (
-            f"Its files have {came_up} up, those of the dataset {up}: what is chosen is turned to {up} up.",
-        )
     return offer
 
 
@@ -181,12 +194,10 @@ def _rows(
     return rows
 
 
-def _up_of(kind: Kind, motions: Mapping[str, Motion], up: str) -> str:
-    """The up axis of some clips; that of the dataset where they have none."""
-    try:
-        return kind.stands(motions)[0] if motions else up
-    except DatasetError:
-        return up  # why none of them can be used is told when they are added
+def _as_placed(place: Place | None) -> Callable[..., Iterable[Candidate]]:
+    """The candidates of a clip that has the dataset's skeleton by itself."""
+    turned, moved = (place.turned, bool(place.lift)) if place else ("", False)
+    return partial(variants, laid=False, turned=turned, moved=moved)
 
 
 def _as_made(name: str, *, mirror: bool) -> Iterator[Candidate]:

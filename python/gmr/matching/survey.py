@@ -21,7 +21,7 @@ from gmr.motion import Motion
 from gmr.skeleton import Skeleton
 from gmr.tpose import leading_rest_frames
 
-__all__ = ["Survey", "difference", "survey"]
+__all__ = ["Survey", "axis_note", "difference", "ground_note", "survey"]
 
 _FARTHEST = 1e9
 """File units, or degrees, beyond which the bones of a body vanish in rounding."""
@@ -56,8 +56,8 @@ class Survey:
     """The axis that is up in the files, such as ``"+Y"``."""
     units: Mapping[str, float]
     """Metres per file unit of each clip."""
-    floor: float
-    """Height of the ground in the files, metres; 0 where it is near 0."""
+    lowest: float
+    """Height on which the lowest joints stand in the middle one of the clips, metres."""
     root: RootJoint | None
     """The joint that already is a simulation root, None where one is made."""
     left_behind: tuple[int, ...]
@@ -66,6 +66,11 @@ class Survey:
     """Clips left out, by name, and why; those that cannot be assembled join them."""
     tell: Callable[[Container[str]], Iterator[str]]
     """What was guessed or done, in sentences that speak of no clip that is left out."""
+
+    @property
+    def floor(self) -> float:
+        """Height of the ground in the files, metres; 0 where it is near 0."""
+        return self.lowest if abs(self.lowest) > _ABOUT_GROUND else 0.0
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -108,7 +113,7 @@ def survey(
     upright = [turned_upright(clip * units[name], up) for name, clip in poses.items()]
     clips = (in_metres_upright(motion, units[name], up) for name, motion in sampled.items())
     root = find_root_joint(skeleton, joints, upright, clips)
-    floor = _floor(upright)
+    lowest = _lowest(upright)
 
     def tell(left_out: Container[str]) -> Iterator[str]:
         left = {name: motion for name, motion in usable.items() if name not in left_out}
@@ -119,11 +124,11 @@ def survey(
         yield from _joint_notes(skeleton, joints, root)
         yield from unit_notes
         if up != "+Y":
-            yield f"The files have {up} up; they were turned to +Y."
-        if floor:
-            yield f"The ground of the files lies at {floor:.2f} m; they were moved to have it at 0."
+            yield axis_note(up)
+        if seen.floor:
+            yield ground_note(seen.floor)
 
-    return Survey(
+    seen = Survey(
         motions=usable,
         skipped=skipped,
         samples=sampled,
@@ -131,12 +136,23 @@ def survey(
         joints=joints,
         up=up,
         units=units,
-        floor=floor,
+        lowest=lowest,
         root=root,
         left_behind=joints_left_behind(skeleton, joints, upright),
         excluded=excluded,
         tell=tell,
     )
+    return seen
+
+
+def axis_note(up: str) -> str:
+    """That files with another up axis than +Y are read as if they had it."""
+    return f"The files have {up} up; they were turned to +Y."
+
+
+def ground_note(floor: float) -> str:
+    """That files whose ground lies elsewhere than at 0 are read as if it lay there."""
+    return f"The ground of the files lies at {floor:.2f} m; they were moved to have it at 0."
 
 
 def _usable(motions: Mapping[str, Motion]) -> tuple[dict[str, Motion], dict[str, str]]:
@@ -286,10 +302,9 @@ def _joints(
         raise (DatasetError(apart) if apart else error) from error
 
 
-def _floor(upright: Iterable[Poses]) -> float:
-    """Height on which the lowest joints stand in the middle one of the clips; 0 where it is about 0."""
-    heights = [float(np.sort(clip[:, :, 1].min(axis=1))[len(clip) // 10]) for clip in upright]
-    return middle(heights) if abs(middle(heights)) > _ABOUT_GROUND else 0.0
+def _lowest(upright: Iterable[Poses]) -> float:
+    """Height on which the lowest joints stand in the middle one of the clips."""
+    return middle([float(np.sort(clip[:, :, 1].min(axis=1))[len(clip) // 10]) for clip in upright])
 
 
 def _joint_notes(skeleton: Skeleton, joints: Joints, root: RootJoint | None) -> list[str]:
