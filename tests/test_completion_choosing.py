@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,8 @@ import numpy as np
 import pytest
 
 import gmr
+from gmr.cli.commands import gmr as command
+from gmr.cli.common import finished
 from gmr.completion import Completion, complete_from, completion_section, synthesised, write_completion
 from gmr.completion.candidates import Candidate, on_skeleton, variants
 from gmr.completion.choice_words import from_folder
@@ -30,6 +33,7 @@ from walkers import CMU, placed, walker
 DEMO = Path(gmr.__file__).parent / "data" / "demo"
 SPEEDS, TURNS = (1.2, 1.6), (-45.0, 0.0, 45.0)
 LEFT = float(np.radians(45.0))
+OTHER_HEAD = {part: f"other {name}" if part == "head" else name for part, name in CMU.items()}
 
 
 @pytest.fixture(scope="module")
@@ -39,12 +43,11 @@ def straight() -> dict[str, gmr.Motion]:
 
 @pytest.fixture(scope="module")
 def others() -> dict[str, gmr.Motion]:
-    names = {part: f"other {name}" if part == "head" else name for part, name in CMU.items()}
     return {
         "turns/left.bvh": walker(8, 1.2, LEFT),
         "stands.bvh": walker(4, 0.1),
         "short.bvh": walker(0.5, 1.2, LEFT),
-        "odd.bvh": walker(8, 1.2, LEFT, names=names),
+        "odd.bvh": walker(8, 1.2, LEFT, names=OTHER_HEAD),
     }
 
 
@@ -53,6 +56,16 @@ def completed(straight: dict[str, gmr.Motion], others: dict[str, gmr.Motion]) ->
     return complete_from(
         straight, others, source="archive", dataset="two", speeds=SPEEDS, turn_rates_deg=TURNS
     )
+
+
+def folders(top: Path, archive: Mapping[str, gmr.Motion]) -> tuple[Path, Path]:
+    """The folder of a dataset that only goes straight, and one of other clips."""
+    clips = {"takes": {"straight.bvh": walker(5, 1.2)}, "archive": archive}
+    for folder, motions in clips.items():
+        (top / folder).mkdir()
+        for name, motion in motions.items():
+            gmr.write(motion, top / folder / name)
+    return top / "takes", top / "archive"
 
 
 def test_turns_are_filled_from_the_one_clip_that_turns_to_both_sides(completed: Completion) -> None:
@@ -319,14 +332,7 @@ def test_chosen_files_are_copied_whole_and_changed_ones_written(
 
 
 def test_both_commands_choose_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    from gmr.cli.commands import gmr as command
-    from gmr.cli.common import finished
-
-    takes, archive = tmp_path / "takes", tmp_path / "archive"
-    takes.mkdir()
-    archive.mkdir()
-    gmr.write(walker(5, 1.2), takes / "straight.bvh")
-    gmr.write(walker(6, 1.2, LEFT), archive / "left.bvh")
+    takes, archive = folders(tmp_path, {"left.bvh": walker(6, 1.2, LEFT)})
     asked = ["--speeds", "1.2", "--turn-rates", "0,45", "-q"]
     one, two = tmp_path / "one", tmp_path / "two"
     assert finished(command, ["complete", str(takes), "--from", str(archive), "-o", str(one), *asked]) == 0
@@ -345,14 +351,8 @@ def test_both_commands_choose_the_same(tmp_path: Path, capsys: pytest.CaptureFix
 def test_the_report_has_before_and_after_and_the_object_their_numbers(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from gmr.cli.commands import gmr as command
-    from gmr.cli.common import finished
-
-    takes, archive, out, report = (tmp_path / name for name in ("takes", "archive", "out", "report.html"))
-    takes.mkdir()
-    archive.mkdir()
-    gmr.write(walker(5, 1.2), takes / "straight.bvh")
-    gmr.write(walker(6, 1.2, LEFT), archive / "left.bvh")
+    takes, archive = folders(tmp_path, {"left.bvh": walker(6, 1.2, LEFT)})
+    out, report = tmp_path / "out", tmp_path / "report.html"
     asked = ["--speeds", "1.2", "--turn-rates", "0,45", "--scenario", "constant", "-q"]
     completing = ["--complete-from", str(archive), "--complete-out", str(out)]
     assert finished(command, ["evaluate", str(takes), *completing, *asked, "-o", str(report), "--json"]) == 0
@@ -397,11 +397,7 @@ def test_a_folder_to_be_completed_is_read_once(tmp_path: Path, monkeypatch: pyte
     from gmr.cli.common import finished
     from gmr.formats.folder import read_folder
 
-    takes, archive = tmp_path / "takes", tmp_path / "archive"
-    takes.mkdir()
-    archive.mkdir()
-    gmr.write(walker(5, 1.2), takes / "straight.bvh")
-    gmr.write(walker(6, 1.2, LEFT), archive / "left.bvh")
+    takes, archive = folders(tmp_path, {"left.bvh": walker(6, 1.2, LEFT)})
     (takes / "broken.bvh").write_text("HIERARCHY\n")
     looked_at = []
 
@@ -417,9 +413,6 @@ def test_a_folder_to_be_completed_is_read_once(tmp_path: Path, monkeypatch: pyte
 
 
 def test_weights_of_a_completion_are_those_asked_for(tmp_path: Path) -> None:
-    from gmr.cli.commands import gmr as command
-    from gmr.cli.common import finished
-
     takes = tmp_path / "takes"
     takes.mkdir()
     gmr.write(walker(5, 1.2), takes / "straight.bvh")
@@ -432,9 +425,6 @@ def test_weights_of_a_completion_are_those_asked_for(tmp_path: Path) -> None:
 def test_a_place_for_the_clips_that_cannot_be_is_found_before_the_work(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from gmr.cli.commands import gmr as command
-    from gmr.cli.common import finished
-
     (tmp_path / "file").write_text("")
     place = tmp_path / "file" / "completed"
     takes = tmp_path / "takes"
@@ -447,16 +437,8 @@ def test_a_place_for_the_clips_that_cannot_be_is_found_before_the_work(
 def test_clips_that_are_refused_are_told_like_files_that_are_left_out(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from gmr.cli.commands import gmr as command
-    from gmr.cli.common import finished
-
-    takes, archive = tmp_path / "takes", tmp_path / "archive"
-    takes.mkdir()
-    archive.mkdir()
-    gmr.write(walker(5, 1.2), takes / "straight.bvh")
-    names = {part: f"other {name}" if part == "head" else name for part, name in CMU.items()}
-    for name in ("a.bvh", "b.bvh"):
-        gmr.write(walker(5, 1.2, LEFT, names=names), archive / name)
+    odd = walker(5, 1.2, LEFT, names=OTHER_HEAD)
+    takes, archive = folders(tmp_path, {"a.bvh": odd, "b.bvh": odd})
     (archive / "broken.bvh").write_text("HIERARCHY\n")
     asked = ["--speeds", "1.2", "--turn-rates", "0,45", "-q", "--json"]
     evaluate = [
@@ -493,16 +475,8 @@ def test_clips_that_are_refused_are_told_like_files_that_are_left_out(
 def test_nothing_is_said_to_be_undone_where_some_clips_can_be_used(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from gmr.cli.commands import gmr as command
-    from gmr.cli.common import finished
-
-    takes, archive = tmp_path / "takes", tmp_path / "archive"
-    takes.mkdir()
-    archive.mkdir()
-    gmr.write(walker(5, 1.2), takes / "straight.bvh")
-    gmr.write(walker(6, 1.2, LEFT), archive / "left.bvh")
-    names = {part: f"other {name}" if part == "head" else name for part, name in CMU.items()}
-    gmr.write(walker(5, 1.2, LEFT, names=names), archive / "odd.bvh")
+    odd = walker(5, 1.2, LEFT, names=OTHER_HEAD)
+    takes, archive = folders(tmp_path, {"left.bvh": walker(6, 1.2, LEFT), "odd.bvh": odd})
     asked = [
         "--speeds",
         "1.2",

@@ -104,7 +104,7 @@ def test_a_clip_that_is_there_twice_changes_nothing_and_goes(mirror: bool, tmp_p
     assert of.curve.points[0].part.seconds == pytest.approx(8.0 * 6 - 2 + 1.6 * 2, abs=0.1)
     assert of.curve.points[-1].part.seconds <= 0.5 * of.curve.points[0].part.seconds
     assert sentences(of)[1] == (
-        "2 clips are the same motion as others ('left/short copy.bvh' as 'left/short.bvh' and 1 more) and "
+        "2 clips hold the same motion as others ('left/short copy.bvh' as 'left/short.bvh' and 1 more) and "
         "went first."
     )
     written = write_pruned(of, tmp_path / "twice", tmp_path / "smaller")

@@ -217,7 +217,7 @@ def test_json_has_the_curve_and_the_importance(
     }
     assert found["folder"] == "pruned"
     assert found["curve"][0]["share_kept"] == 1.0
-    assert found["sentences"][1].startswith("'twin.bvh' is the same motion as 'a.bvh' and went first.")
+    assert found["sentences"][1].startswith("'twin.bvh' holds the same motion as 'a.bvh' and went first.")
     assert {row["clip"] for row in found["importance"]} == {"a.bvh", "b.bvh"}
     assert (tmp_path / "pruned" / "a.bvh").exists()
     assert not (tmp_path / "pruned" / "twin.bvh").exists()

@@ -28,8 +28,9 @@ from gmr.evaluation.figures.frame_usage import frame_usage
 from gmr.evaluation.figures.holds_map import holds_map
 from gmr.evaluation.figures.pose_distance import pose_distance
 from gmr.evaluation.figures.transition_matrix import flows
-from gmr.evaluation.figures.wording import base_name, short_names
+from gmr.evaluation.figures.wording import short_names
 from gmr.evaluation.regions import Grid, Limits
+from gmr.matching.naming import recording_of
 from gmr.pages.theme import DARK, LIGHT, STEPS
 
 
@@ -189,8 +190,8 @@ def test_recordings_add_up_to_what_was_played(mirrored: Evaluation) -> None:
 
 def test_never_played_are_those_without_a_played_frame(mirrored: Evaluation) -> None:
     usage = mirrored.measured.usage
-    played = {base_name(clip) for clip in usage["clip"][usage["count"] > 0]}
-    everything = {base_name(clip) for clip in usage["clip"]}
+    played = {recording_of(clip) for clip in usage["clip"][usage["count"] > 0]}
+    everything = {recording_of(clip) for clip in usage["clip"]}
     assert set(never_played(mirrored.measured.clips)) == everything - played
     assert f"{len(everything - played)} of 40 clips" in clip_usage(mirrored).sentence
 
@@ -203,7 +204,7 @@ def test_flows_keep_every_jump(mirrored: Evaluation) -> None:
     expected = sum(
         row["count"]
         for row in transitions.rows()
-        if (base_name(row["from_clip"]), base_name(row["to_clip"])) == (start, end)
+        if (recording_of(row["from_clip"]), recording_of(row["to_clip"])) == (start, end)
     )
     assert table["count"][0] == expected
 

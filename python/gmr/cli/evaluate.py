@@ -22,7 +22,7 @@ from gmr.cli.cluster_options import check_workers, cluster_options
 from gmr.cli.common import INTERRUPTED, options_given, say
 from gmr.cli.evaluation_options import evaluation_options
 from gmr.cli.evaluation_results import as_object, in_words
-from gmr.cli.outcome import at_place, left_out, refuse_inside, refuse_one_place, trouble_with_files
+from gmr.cli.outcome import at_place, left_out, refuse_inside, refuse_one_place, trouble_with_files, within
 from gmr.cli.progress import Phases
 from gmr.cli.pruning import check_pruning, prune_folder, pruning_options
 from gmr.cli.scenarios import check_scenarios, scenario_options
@@ -245,7 +245,7 @@ def _check_apart(completed: Path | None, pruned: Path | None, places: Mapping[st
     for option, place in places.items():
         if place is None:
             continue
-        if pruned is not None and _within(place, pruned):
+        if pruned is not None and within(place, pruned):
             raise click.UsageError(
                 f"{option} is {place}, where --prune-out writes a dataset, which has nothing else in its "
                 f"folder; give {option} a place elsewhere."
@@ -259,15 +259,10 @@ def _check_beside_completion(option: str, place: Path, completed: Path) -> None:
         each = ", and each writes a trials.csv and a clips.csv" if option == "--tables" else ""
         raise click.UsageError(f"--complete-out and {option} are both {place}{each}; give them two folders.")
     for own, what in (("clips", "the clips"), ("after.html", "the report of the completed dataset")):
-        if _within(place, completed / own):
+        if within(place, completed / own):
             raise click.UsageError(
                 f"{option} is {place}, where --complete-out writes {what}; give {option} another place."
             )
-
-
-def _within(place: Path, folder: Path) -> bool:
-    """Whether a place is a folder, or in it."""
-    return folder.resolve() in (place.resolve(), *place.resolve().parents)
 
 
 def _check_places(out: Path | None, tables: Path | None, figures: Path | None, phases: Phases) -> None:

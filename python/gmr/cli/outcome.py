@@ -12,7 +12,15 @@ from gmr.cli.progress import Phases
 from gmr.errors import GmrError
 from gmr.listing import listed
 
-__all__ = ["alike", "at_place", "left_out", "refuse_inside", "refuse_one_place", "trouble_with_files"]
+__all__ = [
+    "alike",
+    "at_place",
+    "left_out",
+    "refuse_inside",
+    "refuse_one_place",
+    "trouble_with_files",
+    "within",
+]
 
 
 def left_out(failed: Mapping[str, str]) -> Iterator[str]:
@@ -30,11 +38,15 @@ def alike(failed: Mapping[str, str]) -> dict[str, list[str]]:
     return found
 
 
+def within(place: Path, folder: Path) -> bool:
+    """Whether a place is a folder, or in it."""
+    return folder.resolve() in (place.resolve(), *place.resolve().parents)
+
+
 def refuse_inside(out: Path, dataset: Path, option: str) -> None:
     """Refuses a folder for clips that is part of the dataset which they come from, or is the dataset."""
-    place = out.resolve()
-    if dataset.resolve() in (place, *place.parents):
-        where = "is the dataset itself" if place == dataset.resolve() else f"lies in {dataset}"
+    if within(out, dataset):
+        where = "is the dataset itself" if within(dataset, out) else f"lies in {dataset}"
         raise click.UsageError(
             f"{out} {where}, and would be read as a part of it the next time; "
             f"give {option} a place elsewhere."
@@ -44,9 +56,9 @@ def refuse_inside(out: Path, dataset: Path, option: str) -> None:
 def refuse_one_place(one: tuple[str, Path], other: tuple[str, Path]) -> None:
     """Refuses two options, each with its folder, of which one would write into what the other has written."""
     (option, place), (second, elsewhere) = one, other
-    first, last = place.resolve(), elsewhere.resolve()
-    if first == last or first in last.parents or last in first.parents:
-        where = f"are both {place}" if first == last else f"are {place} and {elsewhere}, one in the other"
+    inside, around = within(place, elsewhere), within(elsewhere, place)
+    if inside or around:
+        where = f"are both {place}" if inside and around else f"are {place} and {elsewhere}, one in the other"
         raise click.UsageError(
             f"{option} and {second} {where}: what one writes the other would overwrite or add to; give them "
             "folders apart from each other."

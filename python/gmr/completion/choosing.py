@@ -22,6 +22,7 @@ from gmr.completion.queries import Queries, queries_of
 from gmr.completion.shortfall import shortfalls
 from gmr.completion.tempo import Rows, rows_of
 from gmr.matching.database import Database
+from gmr.matching.naming import recording_of
 from gmr.matching.trial import Profile, Tracking, TrialLog, run_trials
 
 __all__ = ["Choice", "Contest", "bound", "choose", "on_plan", "shortlisted"]
@@ -101,18 +102,18 @@ class Contest:
 
     def _with(self, names: Sequence[str]) -> Database:
         taken = np.array(
-            [_recording(clip) not in self.candidates or _recording(clip) in names for clip in self._clips]
+            [recording_of(clip) not in self.candidates or recording_of(clip) in names for clip in self._clips]
         )
         return self.database.subset(taken[self.database.clips], threads=self.threads)
 
     def shows(self, log: TrialLog, name: str) -> bool:
         """Whether a trial shows a frame of a clip."""
-        clips = [number for number, clip in enumerate(self._clips) if _recording(clip) == name]
+        clips = [number for number, clip in enumerate(self._clips) if recording_of(clip) == name]
         return bool(np.isin(self.database.clips[log.row[log.row >= 0]], clips).any())
 
     def rows(self, name: str) -> Rows:
         """The frames of a candidate, with those of its mirrored copy where the dataset has such."""
-        clips = [number for number, clip in enumerate(self._clips) if _recording(clip) == name]
+        clips = [number for number, clip in enumerate(self._clips) if recording_of(clip) == name]
         return joined([rows_of(self.database, clip) for clip in clips])
 
     @property
@@ -223,7 +224,3 @@ def _promising(
                 of_clip[who[name].source] += 1
                 chosen[name] = saved[name]
     return chosen
-
-
-def _recording(clip: str) -> str:
-    return clip.removesuffix(" (mirrored)")

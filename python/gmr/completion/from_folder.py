@@ -23,6 +23,7 @@ from gmr.evaluation.compare import renamed
 from gmr.evaluation.evaluate import evaluate
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.simulation import Simulation
+from gmr.matching.naming import recording_of
 from gmr.matching.trial import Tracking, TrialLog
 from gmr.motion import Motion
 from gmr.threads import thread_count
@@ -232,9 +233,9 @@ class _Hunt:
         own, mirror = self.kind.motions, bool(self.kind.whole.mirrored.any())
         database = self.kind.build({**own, **clips}, mirror=mirror)
         # A candidate that is a clip of the dataset's adds nothing; the dataset's own is the one that stays.
-        known = {first for name, first in database.duplicates.items() if name in own}
-        if again := [name for name in clips if known & {name, f"{name} (mirrored)"}]:
-            left = {name: clip for name, clip in clips.items() if name not in again}
+        known = {recording_of(first) for name, first in database.duplicates.items() if name in own}
+        if known & set(clips):
+            left = {name: clip for name, clip in clips.items() if name not in known}
             database = self.kind.build({**own, **left}, mirror=mirror)
         refused.update({name: why for name, why in database.excluded.items() if name in clips})
         self.tell("preparing candidates", 1, 1)

@@ -20,6 +20,7 @@ from gmr.completion.up import standing
 from gmr.errors import DatasetError, GmrError
 from gmr.evaluation.words import count
 from gmr.matching.database import Database
+from gmr.matching.naming import image_of
 from gmr.matching.survey import Survey, survey
 from gmr.motion import Motion
 
@@ -186,7 +187,7 @@ def _rows(
     number = {name: clip for clip, name in enumerate(database.clip_names)}
     rows: dict[Candidate, Rows] = {}
     for name in (name for name in clips if name in number):
-        image = number.get(f"{name} (mirrored)")
+        image = number.get(image_of(name))
         for candidate in ways(name, mirror=image is not None and not copies):
             of = [image] if candidate.mirrored else [number[name], *([image] if copies else [])]
             parts = [rows_of(database, clip, candidate.factor) for clip in of if clip is not None]

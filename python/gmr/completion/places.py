@@ -13,6 +13,7 @@ from typing import Final
 
 from gmr.completion.up import own_axes, raised, turned_up
 from gmr.errors import DatasetError
+from gmr.evaluation.words import capital
 from gmr.matching.survey import Survey, axis_note, ground_note
 from gmr.motion import Motion
 
@@ -69,7 +70,7 @@ class Place:
         chosen_of = "what is chosen of them" if self.of else "what is chosen"
         if self.turned:
             yield (
-                f"{some[0].upper()}{some[1:]} have {self.theirs.up} up, those of the dataset {self.turned}: "
+                f"{capital(some)} have {self.theirs.up} up, those of the dataset {self.turned}: "
                 f"{chosen_of} is turned to {self.turned} up."
             )
         if self.lift:
@@ -91,32 +92,30 @@ def placed(
         dataset: what they are to stand beside.
         look: surveys some of them.
     """
-    parts = _by_axis(motions, look)
+    try:
+        seen = look(motions) if motions else None
+    except DatasetError:
+        seen = None
+    parts = [motions] if seen is None else _by_axis(motions, own_axes(seen))
+    if len(parts) == 1:
+        yield dict(motions), None if seen is None else Place(seen, dataset)
+        return
     for part in parts:
         try:
-            yield part, Place(look(part), dataset, len(motions) if len(parts) > 1 else 0)
+            yield dict(part), Place(look(part), dataset, len(motions))
         except DatasetError:
-            yield part, None
+            yield dict(part), None
 
 
-def _by_axis(
-    motions: Mapping[str, Motion], look: Callable[[Mapping[str, Motion]], Survey]
-) -> list[dict[str, Motion]]:
+def _by_axis(motions: Mapping[str, Motion], axes: Mapping[str, str]) -> list[Mapping[str, Motion]]:
     """The clips by the axis along which each stands; those of rare axes stay with the most of them."""
-    try:
-        axes = own_axes(look(motions)) if motions else {}
-    except DatasetError:
-        axes = {}
     usual = Counter(axes.values()).most_common()
-    kept = [axis for axis, clips in usual if clips >= max(2, _PART * len(axes))] or [
-        axis for axis, _ in usual[:1]
-    ]
+    kept = [axis for axis, clips in usual if clips >= max(2, _PART * len(axes))]
     if len(kept) < 2:
-        return [dict(motions)]
+        return [motions]
     parts: dict[str, dict[str, Motion]] = {axis: {} for axis in kept}
     for name, motion in motions.items():
-        axis = axes.get(name, kept[0])
-        parts[axis if axis in parts else kept[0]][name] = motion
+        parts.get(axes.get(name, kept[0]), parts[kept[0]])[name] = motion
     return list(parts.values())
 
 

@@ -11,12 +11,10 @@ from numpy.typing import NDArray
 
 from gmr.evaluation.usage import plays
 from gmr.evaluation.words import count, duration, listing, percent, some_of
+from gmr.matching.naming import recording_of
 from gmr.table import Table
 
-__all__ = ["MIRRORED", "MOST_NAMES", "below_their_common_folder", "clip_sentences", "originals"]
-
-MIRRORED: Final = " (mirrored)"
-"""What the name of a mirrored copy ends in."""
+__all__ = ["MOST_NAMES", "below_their_common_folder", "clip_sentences", "originals"]
 
 MOST_NAMES: Final = 3
 
@@ -44,7 +42,7 @@ class _Clips:
 def originals(clips: Table) -> NDArray[np.str_]:
     """(C,) the names of the clips, a mirrored copy's that of its original."""
     pairs = zip(clips["clip"].tolist(), clips["mirrored"].tolist(), strict=True)
-    return np.array([name.removesuffix(MIRRORED) if copy else name for name, copy in pairs], str)
+    return np.array([recording_of(name) if copy else name for name, copy in pairs], str)
 
 
 def below_their_common_folder(names: list[str]) -> list[str]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gmr.evaluation.failing_blocks import APART, Block, failing_blocks
 from gmr.evaluation.regions import EITHER, LEFT, LEFT_ONLY, RIGHT, RIGHT_ONLY, STRAIGHT, Grid, Region
 from gmr.evaluation.symptoms import symptom
-from gmr.evaluation.words import GAITS, circles, count, duration, gait_of, listing, span, switching
+from gmr.evaluation.words import GAITS, circles, count, duration, ends, gait_of, listing, span, switching
 
 __all__ = ["capture_sentences", "failure_sentences"]
 
@@ -49,14 +49,11 @@ def _movement(grid: Grid, block: Block) -> str:
         return f"going straight {at}"
     if block.side == APART:
         left, right = turns[turns > 0], -turns[turns < 0]
-        each = f"left by {_ends(left)} and right by {_ends(right)} degrees/s"
+        by_left, by_right = (ends(side.min(), side.max()) for side in (left, right))
+        each = f"left by {by_left} and right by {by_right} degrees/s"
         return f"turning {each} {at}"
-    return f"turning {block.side} by {_ends(np.abs(turns))} degrees/s {at}"
-
-
-def _ends(turns: NDArray[np.float64]) -> str:
-    low, high = turns.min(), turns.max()
-    return f"{low:g}" if low == high else f"{low:g} to {high:g}"
+    steep = np.abs(turns)
+    return f"turning {block.side} by {span(steep.min(), steep.max(), 'degrees/s')} {at}"
 
 
 def _trials(block: Block, above: Sequence[Block], below: Sequence[Block]) -> str:

@@ -9,9 +9,11 @@ __all__ = [
     "GAITS",
     "STANDS",
     "beyond",
+    "capital",
     "circles",
     "count",
     "duration",
+    "ends",
     "gait_of",
     "going",
     "hold",
@@ -55,7 +57,7 @@ def number(value: float) -> str:
     """Two digits that matter, and never an exponent: "0.034", "1.2", "12", "340"."""
     if abs(value) >= 10:
         return f"{value:.0f}"
-    return f"{float(f'{value:.2g}'):.10f}".rstrip("0").rstrip(".")
+    return _plain(value, 2)
 
 
 def beyond(value: float, limit: float) -> str:
@@ -64,8 +66,18 @@ def beyond(value: float, limit: float) -> str:
     digits = 2
     while value > limit and not float(told) > limit and digits < 9:
         digits += 1
-        told = f"{float(f'{value:.{digits}g}'):.10f}".rstrip("0").rstrip(".")
+        told = _plain(value, digits)
     return told
+
+
+def _plain(value: float, digits: int) -> str:
+    """So many digits that matter, without an exponent."""
+    return f"{float(f'{value:.{digits}g}'):.10f}".rstrip("0").rstrip(".")
+
+
+def capital(sentence: str) -> str:
+    """A sentence with a capital at its beginning; the rest as it is."""
+    return f"{sentence[:1].upper()}{sentence[1:]}"
 
 
 def hold(trials: int) -> str:
@@ -91,7 +103,12 @@ def duration(seconds: float) -> str:
 
 def span(low: float, high: float, unit: str) -> str:
     """A range of figures with its unit, or the one figure that it is."""
-    return f"{low:g} {unit}" if low == high else f"{low:g} to {high:g} {unit}"
+    return f"{ends(low, high)} {unit}"
+
+
+def ends(low: float, high: float) -> str:
+    """A range of figures, or the one figure that it is."""
+    return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 
 
 def switching(speed: float, every: float) -> str:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from gmr import _core
 from gmr.errors import DatasetError, GmrError, SkeletonError
 from gmr.matching.mirroring import Mirror, find_mirror
+from gmr.matching.naming import image_of
 from gmr.matching.oddities import no_facing
 from gmr.matching.posed import Posed, posed, translated_joints
 from gmr.matching.prepare import in_metres_upright
@@ -49,7 +50,7 @@ class Take:
         """The take seen in a mirror, left for right."""
         return replace(
             self,
-            name=f"{self.name} (mirrored)",
+            name=image_of(self.name),
             clip=mirror.image(self.clip, translated),
             mirrored=True,
         )

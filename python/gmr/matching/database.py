@@ -113,7 +113,7 @@ class Database(DatabaseRows):
 
         given, twice = named(motions), dict[str, str]()
         database = without(twice)
-        while more := duplicates(database, database.mirrored, given):
+        while more := duplicates(database, given):
             twice = followed(twice, more)
             database = without(twice)
         if not twice:

@@ -25,6 +25,7 @@ class DatabaseRows:
     core: _core.Database
     schema: Schema
     clip_names: tuple[str, ...]
+    mirrored: NDArray[np.bool_]
     starts: NDArray[np.float64]
 
     def __len__(self) -> int:

@@ -14,12 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.matching.database_rows import DatabaseRows
+from gmr.matching.naming import image_of, recording_of
 from gmr.motion import Motion
 
-__all__ = ["duplicates", "duplicates_note", "followed"]
-
-_IMAGE: Final = " (mirrored)"
-"""What the name of a mirrored copy ends with."""
+__all__ = ["duplicates", "duplicates_clause", "duplicates_note", "followed"]
 
 _ALIKE: Final = 1e-4
 """Metres by which joints may differ, seen from the simulation root: digits that were not written."""
@@ -31,9 +29,7 @@ _TURNS_ALIKE: Final = 5e-4
 """By which the numbers of a quaternion may differ: half an angle in radians."""
 
 
-def duplicates(
-    rows: DatabaseRows, mirrored: NDArray[np.bool_], motions: Mapping[str, Motion]
-) -> dict[str, str]:
+def duplicates(rows: DatabaseRows, motions: Mapping[str, Motion]) -> dict[str, str]:
     """The clips that equal another, or its mirrored copy, frame by frame, joint by joint and tag by tag.
 
     They are compared as the database has them: whatever their unit, where they lie in the world, and whether
@@ -41,7 +37,6 @@ def duplicates(
 
     Args:
         rows: of a database.
-        mirrored: (C,) which of its clips are mirrored copies, each behind its original.
         motions: what its clips were read from, by name.
 
     Returns:
@@ -50,15 +45,15 @@ def duplicates(
         of, of equals the first.
     """
     found: dict[str, str] = {}
-    for alike in _alike(rows, mirrored):
+    for alike in _alike(rows):
         stays = min(alike, key=lambda name: (round(motions[name].frame_time, 6), len(name)))
         for name, image in alike.items():
             if name != stays:
-                found[name] = stays if image == alike[stays] else stays + _IMAGE
+                found[name] = stays if image == alike[stays] else image_of(stays)
     return found
 
 
-def _alike(rows: DatabaseRows, mirrored: NDArray[np.bool_]) -> list[dict[str, bool]]:
+def _alike(rows: DatabaseRows) -> list[dict[str, bool]]:
     """The clips by their motion, mirrored copies not named; whether each is the mirror image of the first."""
     groups: list[dict[str, bool]] = []
     # By the number of frames: a number of the last one, the clip, its group and whether it is an image there.
@@ -67,7 +62,7 @@ def _alike(rows: DatabaseRows, mirrored: NDArray[np.bool_]) -> list[dict[str, bo
     for clip, (start, end) in enumerate(rows.core.clip_ranges):
         same_length = known.setdefault(end - start, [])
         told = float(rows.positions[end - 1].mean(dtype=np.float64))
-        if mirrored[clip]:
+        if rows.mirrored[clip]:
             image = not image
         else:
             near = same_length[bisect_left(same_length, (told - _ALIKE,)) :]
@@ -110,19 +105,22 @@ def followed(found: Mapping[str, str], more: Mapping[str, str]) -> dict[str, str
     """All duplicates, when some clips that stood for others turn out to be duplicates themselves."""
     stand = {}
     for name, first in found.items():
-        of = first.removesuffix(_IMAGE)
+        of = recording_of(first)
         then = more.get(of, of)
-        odd = first.endswith(_IMAGE) != then.endswith(_IMAGE)
-        stand[name] = then.removesuffix(_IMAGE) + (_IMAGE if odd else "")
+        is_image = (first != of) != (then != recording_of(then))
+        stand[name] = image_of(recording_of(then)) if is_image else recording_of(then)
     return {**stand, **more}
+
+
+def duplicates_clause(found: Mapping[str, str]) -> str:
+    """Which clips hold the same motion as which, as the beginning of a sentence on them."""
+    (name, first), more = next(iter(found.items())), len(found) - 1
+    if not more:
+        return f"'{name}' holds the same motion as '{first}'"
+    return f"{len(found)} clips hold the same motion as others ('{name}' as '{first}' and {more} more)"
 
 
 def duplicates_note(found: Mapping[str, str]) -> str:
     """Which clips were left out for others, in a sentence."""
-    (name, first), more = next(iter(found.items())), len(found) - 1
-    if not more:
-        return f"'{name}' holds the same motion as '{first}' and was left out: every motion counts once."
-    return (
-        f"{len(found)} clips hold the same motion as others ('{name}' as '{first}' and {more} more) and were "
-        "left out: every motion counts once."
-    )
+    were = "was" if len(found) == 1 else "were"
+    return f"{duplicates_clause(found)} and {were} left out: every motion counts once."

@@ -3,11 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import Final
 
 from gmr.errors import DatasetError
 from gmr.motion import Motion
 
-__all__ = ["named"]
+__all__ = ["MIRRORED", "image_of", "named", "recording_of"]
+
+MIRRORED: Final = " (mirrored)"
+"""What the name of a mirrored copy ends with."""
+
+
+def image_of(name: str) -> str:
+    """What the mirrored copy of a clip is called."""
+    return name + MIRRORED
+
+
+def recording_of(clip: str) -> str:
+    """The name of the recording behind a clip: that of a mirrored copy without its mark."""
+    return clip.removesuffix(MIRRORED)
 
 
 def named(motions: Iterable[Motion] | Mapping[str, Motion]) -> dict[str, Motion]:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gmr.matching.database import Database
+from gmr.matching.naming import recording_of
 from gmr.table import Table
 
 __all__ = ["Part", "Range", "Recording", "gaps", "ranges_of", "recordings_of", "whole"]
@@ -110,11 +111,7 @@ def whole(database: Database) -> Part:
     ranges: dict[str, tuple[Range, ...]] = {
         each.name: ((0, each.frames),) for each in recordings_of(database)
     }
-    frames = {
-        name: end - start
-        for name, (start, end) in zip(database.clip_names, database.core.clip_ranges, strict=True)
-    }
-    twice = {name: ((0, frames[first]),) for name, first in database.duplicates.items()}
+    twice = {name: ranges[recording_of(first)] for name, first in database.duplicates.items()}
     return Part(database.rate, ranges | twice)
 
 

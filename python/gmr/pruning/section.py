@@ -8,6 +8,7 @@ import numpy as np
 
 from gmr.evaluation.report.parts import shown_figure
 from gmr.evaluation.report.tables import Column, html_table
+from gmr.evaluation.words import capital
 from gmr.pages.document import element, items, section, text
 from gmr.pages.section import Section
 from gmr.pruning.figures import figures
@@ -72,7 +73,7 @@ def _files(written: Written) -> Table:
     rows = scores(written, "the new folder's files")
     return Table(
         {
-            "what": np.array([f"{what[0].upper()}{what[1:]}" for what in rows], object),
+            "what": np.array([capital(what) for what in rows], object),
             "offset_mean": np.array([score.offset for score in rows.values()]),
             "held": np.array([score.held for score in rows.values()], np.int64),
             "runs": np.array([score.runs for score in rows.values()], np.int64),

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from gmr.evaluation.words import count, duration, hold, listing, number, percent
+from gmr.matching.duplicates import duplicates_clause
 from gmr.pruning.curve import Point
 from gmr.pruning.outcomes import Score
 from gmr.pruning.prune import Pruning
@@ -86,16 +87,8 @@ def _lossless(of: Pruning) -> str:
 
 def twice_sentence(of: Pruning) -> Iterator[str]:
     """Which of them go because another is the same motion, where there are such."""
-    twice = of.simulation.database.duplicates
-    if twice:
-        name, first = next(iter(twice.items()))
-        if len(twice) == 1:
-            yield f"'{name}' is the same motion as '{first}' and went first."
-        else:
-            yield (
-                f"{len(twice)} clips are the same motion as others ('{name}' as '{first}' and "
-                f"{len(twice) - 1} more) and went first."
-            )
+    if twice := of.simulation.database.duplicates:
+        yield f"{duplicates_clause(twice)} and went first."
 
 
 def curve_sentence(of: Pruning) -> str:

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from gmr.evaluation.figures.axes import WIDE, bare_axes
 from gmr.evaluation.figures.clip_usage import recordings
-from gmr.evaluation.figures.wording import base_name
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.usage import plays
 from gmr.evaluation.words import count, percent
+from gmr.matching.naming import recording_of
 from gmr.pages.figure import Figure
 from gmr.table import Table
 
@@ -57,7 +57,7 @@ def _key(names: list[str]) -> tuple[str, ...]:
 
 def _numbers(clips: NDArray[Any], number: Mapping[str, int]) -> NDArray[np.int64]:
     """(N,) the circle of each clip, -1 for clips without one."""
-    known = {clip: number.get(base_name(clip), -1) for clip in dict.fromkeys(clips.tolist())}
+    known = {clip: number.get(recording_of(clip), -1) for clip in dict.fromkeys(clips.tolist())}
     return np.fromiter((known[clip] for clip in clips.tolist()), np.int64, len(clips))
 
 

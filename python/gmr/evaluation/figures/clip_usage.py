@@ -7,9 +7,10 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gmr.evaluation.figures.wording import base_name, short_names
+from gmr.evaluation.figures.wording import short_names
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.words import count, percent
+from gmr.matching.naming import recording_of
 from gmr.pages.figure import Figure
 from gmr.pages.theme import NAMES_AXIS, NAMES_CONFIG, ROW
 from gmr.table import Table
@@ -56,7 +57,7 @@ def recordings(clips: Table) -> Table:
         ``played_seconds``, ``played_share`` and its parts ``share_recorded`` and ``share_mirrored``, and
         ``used_share``: the larger of the two shares of its frames that were played.
     """
-    names, row = np.unique([base_name(clip) for clip in clips["clip"]], return_inverse=True)
+    names, row = np.unique([recording_of(clip) for clip in clips["clip"]], return_inverse=True)
     copy = clips["mirrored"].astype(bool)
 
     def total(column: str, chosen: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from gmr.evaluation.figures.axes import at_the_edge, point_axes, widest_turn
 from gmr.evaluation.figures.time_shares import turning_share, usual_speeds
-from gmr.evaluation.figures.wording import base_name
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.words import count, percent
+from gmr.matching.naming import recording_of
 from gmr.pages.figure import Figure
 from gmr.table import Table
 
@@ -48,7 +48,7 @@ def coverage_scatter(evaluation: Evaluation) -> Figure:
     return Figure(
         name="coverage_scatter",
         title="Speed and turn rate of every second of motion, by clip",
-        sentence=_sentence(windows, len({base_name(clip) for clip in clips.tolist()}), step, limit),
+        sentence=_sentence(windows, len({recording_of(clip) for clip in clips.tolist()}), step, limit),
         chart=_chart(points, limit),
         data={"windows": points, "chosen": points.take(np.arange(0))},
     )

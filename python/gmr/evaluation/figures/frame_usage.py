@@ -8,10 +8,11 @@ import numpy as np
 
 from gmr.evaluation.figures.classes import Classes
 from gmr.evaluation.figures.clip_usage import MOST_BARS, recordings
-from gmr.evaluation.figures.wording import base_name, short_names
+from gmr.evaluation.figures.wording import short_names
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.usage import plays
 from gmr.evaluation.words import count, percent
+from gmr.matching.naming import recording_of
 from gmr.pages.figure import Figure
 from gmr.pages.theme import NAMES_AXIS, NAMES_CONFIG, ROW
 from gmr.table import Table
@@ -39,7 +40,7 @@ def frame_usage(evaluation: Evaluation) -> Figure:
 
 def _pieces(usage: Table, names: list[str]) -> Table:
     place = {name: number for number, name in enumerate(names)}
-    by_name = {clip: place.get(base_name(clip), -1) for clip in dict.fromkeys(usage["clip"].tolist())}
+    by_name = {clip: place.get(recording_of(clip), -1) for clip in dict.fromkeys(usage["clip"].tolist())}
     clip = np.fromiter((by_name[name] for name in usage["clip"].tolist()), np.int64, len(usage))
     chosen = clip >= 0
     clip, frame, seconds = clip[chosen], usage["frame"][chosen].astype(np.int64), usage["seconds"][chosen]

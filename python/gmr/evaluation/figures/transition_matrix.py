@@ -8,9 +8,10 @@ import numpy as np
 
 from gmr.evaluation.figures.classes import Classes
 from gmr.evaluation.figures.clip_usage import recordings
-from gmr.evaluation.figures.wording import base_name, short_names
+from gmr.evaluation.figures.wording import short_names
 from gmr.evaluation.result import Evaluation
 from gmr.evaluation.words import percent
+from gmr.matching.naming import recording_of
 from gmr.pages.figure import Figure
 from gmr.pages.theme import NAMES_AXIS, NAMES_CONFIG, ROW
 from gmr.table import Table
@@ -63,7 +64,7 @@ def flows(transitions: Table) -> Table:
         One row a pair of recordings, most jumps first: ``from_clip``, ``to_clip``, ``count``.
     """
     recording = {
-        clip: base_name(clip)
+        clip: recording_of(clip)
         for column in ("from_clip", "to_clip")
         for clip in dict.fromkeys(transitions[column].tolist())
     }

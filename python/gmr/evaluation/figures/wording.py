@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 from typing import Final
 
-from gmr.evaluation.clip_sentences import MIRRORED
 from gmr.evaluation.scenario import Trial
 from gmr.evaluation.words import turning
+from gmr.matching.naming import recording_of
 
-__all__ = ["asked", "asked_of", "base_name", "metres", "short_names"]
+__all__ = ["asked", "asked_of", "metres", "short_names"]
 
 _LONGEST_LABEL: Final = 32
 _AGAIN: Final = "\N{NO-BREAK SPACE}#"
@@ -32,11 +32,6 @@ def asked_of(trial: Trial) -> str:
     return f"{trial.path} of {trial.scenario}" if trial.path else asked(trial.speed, trial.turn_rate_deg)
 
 
-def base_name(clip: str) -> str:
-    """The name of the recording behind a clip: that of a mirrored copy without its mark."""
-    return clip.removesuffix(MIRRORED)
-
-
 def short_names(clips: Sequence[str]) -> list[str]:
     """Names that fit beside an axis and stay different, in the order of the clips.
 
@@ -46,12 +41,12 @@ def short_names(clips: Sequence[str]) -> list[str]:
     names = [PurePosixPath(clip).name for clip in clips]
     if len(set(names)) < len(set(clips)):
         names = list(clips)
-    suffixes = {PurePosixPath(base_name(name)).suffix for name in names}
+    suffixes = {PurePosixPath(recording_of(name)).suffix for name in names}
     common = suffixes.pop() if len(suffixes) == 1 else ""
     labels: list[str] = []
     for name in names:
-        mark = name[len(base_name(name)) :]
-        label = _end_of(base_name(name).removesuffix(common)) + mark
+        mark = name[len(recording_of(name)) :]
+        label = _end_of(recording_of(name).removesuffix(common)) + mark
         same = sum(label == other.split(_AGAIN)[0] for other in labels)
         labels.append(f"{label}{_AGAIN}{same + 1}" if same else label)
     return labels

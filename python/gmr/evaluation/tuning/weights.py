@@ -8,9 +8,9 @@ the distances of features are weighted anew.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import count
 from typing import Any, Final
 
 import numpy as np
@@ -26,6 +26,7 @@ from gmr.evaluation.scenario import Trial
 from gmr.evaluation.simulation import log_of
 from gmr.evaluation.trials import speed_error_share
 from gmr.evaluation.tuning.descent import Descent, Factors, descend
+from gmr.evaluation.words import count
 from gmr.matching.database import Database
 from gmr.matching.schema import Schema
 from gmr.matching.trial import Profile, run_trials
@@ -153,7 +154,7 @@ def tune(
     def on(which: NDArray[np.bool_], factors: Factors) -> Table:
         return cells.measured(which, _multipliers(cells.database.schema, tied, factors), smoothness, threads)
 
-    runs = count(1)
+    runs = itertools.count(1)
 
     def objective(factors: Factors) -> float:
         found = float(on(cells.training, factors)["objective"].mean())
@@ -210,9 +211,8 @@ class _Cells:
         turn = np.array([simulation.trials[place].turn_rate_deg for place in chosen])
         training = _checkerboard(speed, turn)
         if min(training.sum(), (~training).sum()) < 2:
-            counted = "trial" if len(chosen) == 1 else "trials"
             raise ValueError(
-                f"{len(chosen)} constant {counted} cannot be split; evaluate at least four, "
+                f"{count(len(chosen), 'constant trial')} cannot be split; evaluate at least four, "
                 "in the constant scenario"
             )
         profiles = tuple(simulation.profiles[place] for place in chosen)

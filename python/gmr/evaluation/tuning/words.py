@@ -9,7 +9,7 @@ from typing import Final
 from gmr.evaluation.intervals import Interval
 from gmr.evaluation.tuning.descent import FARTHEST
 from gmr.evaluation.tuning.weights import HELD_OUT, TRAINING, WORTHWHILE, Tuning
-from gmr.evaluation.words import count, listing, number, percent
+from gmr.evaluation.words import capital, count, hold, listing, number, percent
 from gmr.matching.schema import LOCOMOTION
 
 __all__ = ["headline", "sentences"]
@@ -101,11 +101,10 @@ def _held(tuning: Tuning) -> str:
     for which, what in ((TRAINING, "tuned on"), (HELD_OUT, "held out")):
         chosen = tuning.trials["set"] == which
         before, after = tuning.holding(which)
-        hold = f"{after} {'holds' if after == 1 else 'hold'}" if after else "none holds"
+        holding = f"{after} {hold(after)}" if after else "none holds"
         than = ", as before" if after == before else f" where {before or 'none'} did"
-        parts.append(f"of the {count(int(chosen.sum()), 'trial')} {what} {hold}{than}")
-    said = "; ".join(parts)
-    return f"{said[0].upper()}{said[1:]}."
+        parts.append(f"of the {count(int(chosen.sum()), 'trial')} {what} {holding}{than}")
+    return f"{capital('; '.join(parts))}."
 
 
 def _bounds(tuning: Tuning) -> Iterator[str]:
