@@ -203,6 +203,29 @@ proptest! {
 }
 
 #[test]
+fn a_node_whose_grid_is_none_is_not_measured() {
+    let case = Case::new(Kind::Walk, 600, 7, &mut Random(1));
+    let whole = Saved::of(&case.indices[0]);
+    for parts in [-1.4e32, f32::NAN, f32::INFINITY, 1e30] {
+        let mut hostile = whole.clone();
+        for grid in hostile.grids.chunks_exact_mut(super::codes::grid_width(7)) {
+            let end = grid.len();
+            grid[end - 2] = parts;
+        }
+        let hostile = hostile.resealed();
+        for isa in Isa::available() {
+            let index = hostile.opened(isa).unwrap();
+            let mut hits = [Hit::NONE; 5];
+            let query = case.query_features(&mut Random(2));
+            assert!(matches!(
+                index.search_top(&Query::new(&query), &mut hits),
+                Err(IndexError::Damaged { what: "node", .. })
+            ));
+        }
+    }
+}
+
+#[test]
 fn an_order_that_names_a_dimension_twice_is_refused() {
     let case = Case::new(Kind::Walk, 50, 4, &mut Random(1));
     for order in [vec![0, 1, 1, 2], vec![0, 1, 2, 4], vec![u32::MAX, 1, 2, 3]] {

@@ -152,7 +152,13 @@ impl<'a, K: Kernel<W>, D: Width, M: Metric<D>, B: Best, const ALONE: bool> Desce
     #[inline(always)]
     fn open(&mut self, level: usize, node: usize) {
         let place = self.tree.place(level, node);
-        let mut left = if self.tree.is_sound_node(place) { self.tree.children(level, node) } else { 0 };
+        self.level = level;
+        if !self.tree.is_sound_node(place) {
+            // What its numbers would come to nobody knows.
+            self.path[level] = Open { bounds: self.kernel.zero(), left: 0, is_new: true, node };
+            return;
+        }
+        let mut left = self.tree.children(level, node);
         if self.query.tags != 0 {
             left &= carrying(&self.tree.node_tags[place], self.query.tags);
         }
@@ -165,7 +171,6 @@ impl<'a, K: Kernel<W>, D: Width, M: Metric<D>, B: Best, const ALONE: bool> Desce
             }
         }
         self.path[level] = Open { bounds, left, is_new: true, node };
-        self.level = level;
     }
 
     /// What to read of the leaves below the open node that may hold a frame that beats the best. Where there is none to
